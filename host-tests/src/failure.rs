@@ -1,5 +1,6 @@
 //! The failure of a command: one line with the place, what is wrong and the remedy.
 
+use crate::visible::visible;
 use std::{
     fmt,
     io::{self, ErrorKind, Write as _},
@@ -235,7 +236,8 @@ pub fn brief(value: f64) -> String {
     }
 }
 
-/// The text without line breaks and other control characters.
+/// The text without line breaks and other control characters, and with escapes in the place of characters that cannot
+/// be seen.
 pub fn one_line(text: &str) -> String {
-    text.replace(char::is_control, " ")
+    visible(&text.replace(char::is_control, " ")).into_owned()
 }

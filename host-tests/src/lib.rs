@@ -19,5 +19,6 @@ pub mod simulate;
 #[cfg(feature = "study")]
 pub mod study;
 pub mod unit;
+mod visible;
 
 pub use demonstration;

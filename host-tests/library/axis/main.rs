@@ -1,6 +1,7 @@
 //! Axes keep one record of samples and gaps for all their parts, whatever was left out, lost,
 //! merged or restored.
 
+mod histories;
 #[path = "../common/seeded.rs"]
 mod seeded;
 mod stored;

@@ -11,6 +11,10 @@ use std::{
 };
 
 fn main() -> ExitCode {
+    #[cfg(feature = "tables")]
+    if let Some(status) = host_tests::log::answer_about_table() {
+        return status;
+    }
     let line = match CommandLine::try_parse() {
         Ok(line) => line,
         Err(error) if error.use_stderr() => {

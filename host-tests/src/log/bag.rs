@@ -2,7 +2,7 @@
 
 use super::{
     Options, bag_mcap, bag_ros1, bag_sqlite,
-    channel::{Channel, Show},
+    channel::{Budget, Channel, Layouts, MOST_CHANNELS, Show},
     columns::{AxisColumn, Columns, Look},
     converted::{Converted, Text},
     imu_message::{COLUMNS, Encoding, ImuMessage},
@@ -13,10 +13,11 @@ use super::{
 use crate::failure::{Failure, Place, quoted};
 use indicatif::ProgressBar;
 use std::{
-    collections::BTreeMap,
+    collections::{BTreeMap, BTreeSet},
     io::Write as _,
     ops::ControlFlow,
     path::{Path, PathBuf},
+    rc::Rc,
 };
 
 /// The number of messages that decide what the columns look like. Chosen by hand.
@@ -50,18 +51,24 @@ impl Bag {
         options: &Options,
         progress: &ProgressBar,
     ) -> Result<Self, Failure> {
-        let mut first: BTreeMap<String, Vec<ImuMessage>> = BTreeMap::new();
+        let wanted = options.topic.as_deref();
+        // The first messages of the topic that is read, which is the first one if it is the only one.
+        let mut first: Option<(Rc<str>, Vec<ImuMessage>)> = None;
         let channels = each_message(container, &files, progress, &mut |channel, bytes| {
+            if wanted.is_some_and(|wanted| *channel.topic != *wanted) {
+                return Ok(ControlFlow::Continue(()));
+            }
             if let Some(encoding) = channel.imu() {
-                let first = first.entry(channel.topic.clone()).or_default();
-                if first.len() < LOOKS {
+                let (topic, first) =
+                    first.get_or_insert_with(|| (channel.topic.clone(), Vec::new()));
+                if *topic == channel.topic && first.len() < LOOKS {
                     first.extend(ImuMessage::read(bytes, encoding));
                 }
             }
             Ok(ControlFlow::Continue(()))
         })?;
-        let topic = choose(path, &channels, options.topic.as_deref())?;
-        let first = first.remove(&topic).unwrap_or_default();
+        let topic = choose(path, &channels, wanted)?;
+        let (_, first) = first.filter(|(of, _)| **of == *topic).unwrap_or_default();
         let column = |column: usize| -> Vec<f64> {
             let value = |message: &ImuMessage| match column.checked_sub(1) {
                 None => message.stamp_ns as f64,
@@ -107,7 +114,7 @@ impl Table for Bag {
             &self.files,
             progress,
             &mut |channel, bytes| {
-                let Some(encoding) = channel.imu().filter(|_| channel.topic == self.topic) else {
+                let Some(encoding) = channel.imu().filter(|_| *channel.topic == *self.topic) else {
                     return Ok(ControlFlow::Continue(()));
                 };
                 row += 1;
@@ -153,7 +160,7 @@ fn choose(path: &Path, channels: &[Channel], wanted: Option<&str>) -> Result<Str
     let all = || channels.iter();
     let mut imus: Vec<&str> = all()
         .filter(|channel| channel.imu().is_some())
-        .map(|channel| channel.topic.as_str())
+        .map(|channel| &*channel.topic)
         .collect();
     imus.sort_unstable();
     imus.dedup();
@@ -169,11 +176,12 @@ fn choose(path: &Path, channels: &[Channel], wanted: Option<&str>) -> Result<Str
                     encoding,
                     ..
                 } = channel;
+                let [topic, schema, encoding] = [topic, schema, encoding].map(|name| brief(name));
                 format!("{topic} ({schema}, {encoding})")
             };
-            let found = match all().map(kind).collect::<Vec<_>>() {
-                found if found.is_empty() => "no topic at all".into(),
-                found => format!("only {}", found.join(", ")),
+            let found = match channels {
+                [] => "no topic at all".into(),
+                found => format!("only {}", listed(found.iter().map(kind))),
             };
             fail(
                 format!("no topic of sensor_msgs/msg/Imu: {found}"),
@@ -182,13 +190,43 @@ fn choose(path: &Path, channels: &[Channel], wanted: Option<&str>) -> Result<Str
         }
         (Some(wanted), imus) => fail(
             format!("no IMU topic is named {}", quoted(wanted.as_bytes())),
-            &format!("choose with --topic from {}", imus.join(", ")),
+            &format!(
+                "choose with --topic from {}",
+                listed(imus.iter().map(|topic| brief(topic)))
+            ),
         ),
         (None, imus) => fail(
-            format!("there are {} IMU topics: {}", imus.len(), imus.join(", ")),
+            format!(
+                "there are {} IMU topics: {}",
+                imus.len(),
+                listed(imus.iter().map(|topic| brief(topic)))
+            ),
             "choose one with --topic",
         ),
     }
+}
+
+/// The most names in a message, and the most characters of each. Chosen by hand.
+const MOST_NAMES: usize = 10;
+const LONGEST_NAME: usize = 60;
+
+/// The beginning of a name.
+fn brief(name: &str) -> String {
+    let mut shown: String = name.chars().take(LONGEST_NAME).collect();
+    if shown.len() < name.len() {
+        shown.push('…');
+    }
+    shown
+}
+
+/// The first of several names, and how many follow.
+fn listed(names: impl ExactSizeIterator<Item = String>) -> String {
+    let more = names.len().saturating_sub(MOST_NAMES);
+    let mut shown: Vec<String> = names.take(MOST_NAMES).collect();
+    if more > 0 {
+        shown.push(format!("and {more} more"));
+    }
+    shown.join(", ")
 }
 
 /// The messages of another type that is asked for, or of the only type with rates among its fields, as text: one that
@@ -200,7 +238,7 @@ pub(super) fn other_messages(
     progress: &ProgressBar,
 ) -> Result<Option<Converted>, Failure> {
     let wanted = options.topic.as_deref();
-    let is_wanted = |channel: &&Channel| wanted.is_none_or(|wanted| channel.topic == wanted);
+    let is_wanted = |channel: &&Channel| wanted.is_none_or(|wanted| *channel.topic == *wanted);
     let channels = each_message(container, files, progress, &mut |channel, _| {
         let is_imu = is_wanted(&channel) && channel.imu().is_some();
         Ok(if is_imu {
@@ -228,26 +266,25 @@ pub(super) fn other_messages(
         let is_rate = |name: &&String| words.iter().any(|word| name.to_lowercase().contains(word));
         names.iter().filter(is_rate).count() >= 3
     };
-    let mut found: BTreeMap<&str, (Layout, Encoding)> = BTreeMap::new();
+    let mut found: BTreeMap<&str, (Rc<Layout>, Encoding)> = BTreeMap::new();
+    let mut layouts = Layouts::new();
     for channel in channels.iter().filter(is_wanted) {
-        let layout = channel.layout();
+        let layout = layouts.of(channel);
         let layout = layout.filter(|(layout, _)| match wanted {
             Some(_) => !layout.columns().is_empty(),
             None => has_rates(layout),
         });
-        found.extend(layout.map(|layout| (channel.topic.as_str(), layout)));
+        found.extend(layout.map(|layout| (&*channel.topic, layout)));
     }
     let mut found = found.into_iter();
     let (Some((topic, (layout, encoding))), None) = (found.next(), found.next()) else {
         return Ok(None);
     };
-    let size = files.iter().filter_map(|file| file.metadata().ok());
-    let size = size.map(|file| file.len()).sum();
-    let mut text = Text::new(path, size)?;
+    let (mut text, file) = Text::new(path, length(files))?;
     text.names(layout.columns())
         .map_err(|error| text.failure(&error))?;
     each_message(container, files, progress, &mut |channel, bytes| {
-        if channel.topic == topic {
+        if *channel.topic == *topic {
             let values = layout.read(bytes, encoding).ok_or_else(|| {
                 let what = format!("{topic}: a message is not as its definition says");
                 Place::file(path).failure(what, "record the bag again")
@@ -265,18 +302,30 @@ pub(super) fn other_messages(
         }
         Ok(ControlFlow::Continue(()))
     })?;
-    let note = format!("topic {topic}");
-    text.finish(Some(note)).map(Some)
+    text.finish()?;
+    Ok(Some(Converted {
+        text: file,
+        note: Some(format!("topic {topic}")),
+    }))
 }
 
-/// Calls `show` with every message and its channel, file after file, until `show` breaks. Returns the channels.
+/// The bytes that files have together.
+fn length(files: &[PathBuf]) -> u64 {
+    let files = files.iter().filter_map(|file| file.metadata().ok());
+    files.map(|file| file.len()).sum()
+}
+
+/// Calls `show` with every message and its channel, file after file, until `show` breaks. Returns the channels, each of
+/// them once.
 fn each_message(
     container: Container,
     files: &[PathBuf],
     progress: &ProgressBar,
     show: Show,
 ) -> Result<Vec<Channel>, Failure> {
+    let mut budget = Budget::new(length(files));
     let mut channels = Vec::new();
+    let mut known = BTreeSet::new();
     let mut is_over = false;
     let mut show = |channel: &Channel, bytes: &[u8]| {
         if is_over {
@@ -287,11 +336,22 @@ fn each_message(
         Ok(flow)
     };
     for file in files {
-        channels.extend(match container {
-            Container::Mcap => bag_mcap::each_message(file, progress, &mut show)?,
-            Container::Ros1 => bag_ros1::each_message(file, progress, &mut show)?,
-            Container::Sqlite => bag_sqlite::each_message(file, progress, &mut show)?,
-        });
+        let read = match container {
+            Container::Mcap => bag_mcap::each_message,
+            Container::Ros1 => bag_ros1::each_message,
+            Container::Sqlite => bag_sqlite::each_message,
+        };
+        for channel in read(file, progress, &mut budget, &mut show)? {
+            if known.insert(channel.clone()) {
+                channels.push(channel);
+            }
+        }
+        if channels.len() > MOST_CHANNELS {
+            return Err(Place::file(file).failure(
+                format!("damaged: more than {MOST_CHANNELS} channels"),
+                "check what it holds, and copy it again",
+            ));
+        }
     }
     Ok(channels)
 }

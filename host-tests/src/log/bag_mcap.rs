@@ -3,7 +3,8 @@
 
 use super::{
     channel::{
-        Channel, LONGEST_RECORD, MOST_TIMES_AT_ONCE, MOST_TIMES_IN_ALL, Show, budget, damaged, text,
+        Budget, Channel, LONG_NAMES, LONGEST_RECORD, MOST_TIMES_AT_ONCE, Show, UNPACKS_TOO_MUCH,
+        budget, damaged,
     },
     source,
 };
@@ -24,7 +25,7 @@ const RECOVER: &str = "copy it again, or recover what there is with `mcap recove
 /// The schemas and channels of a bag by their identifiers.
 #[derive(Default)]
 struct Channels {
-    schemas: BTreeMap<u16, (String, Rc<str>)>,
+    schemas: BTreeMap<u16, (Rc<str>, Rc<str>)>,
     channels: BTreeMap<u16, Channel>,
 }
 
@@ -32,6 +33,7 @@ struct Channels {
 pub(super) fn each_message(
     path: &Path,
     progress: &ProgressBar,
+    claims: &mut Budget,
     show: Show,
 ) -> Result<Vec<Channel>, Failure> {
     let fail = |error: McapError| failure(path, &error);
@@ -49,8 +51,7 @@ pub(super) fn each_message(
     let mut messages = 0;
     let damaged = |what: &str| damaged(path, what, RECOVER);
     let short = || damaged("a record is too short");
-    let most = budget(length, MOST_TIMES_IN_ALL);
-    let mut unpacked = 0;
+    let long_names = || damaged(LONG_NAMES);
     while let Some(event) = reader.next_event() {
         let (opcode, data) = match event.map_err(fail)? {
             LinearReadEvent::ReadRequest(need) => {
@@ -62,18 +63,17 @@ pub(super) fn each_message(
             }
             LinearReadEvent::Record { opcode, data } => (opcode, data),
         };
-        unpacked += 9 + data.len() as u64;
-        if unpacked > most {
-            return Err(damaged("the chunks unpack to too many times their size"));
-        }
+        let unpacked = claims.unpack(9 + data.len() as u64);
+        unpacked.ok_or_else(|| damaged(UNPACKS_TOO_MUCH))?;
         let mut fields = Fields(data);
         match opcode {
             op::SCHEMA => {
                 let id = fields.number().ok_or_else(short)?;
-                let name = fields.text().ok_or_else(short)?;
+                let name = fields.bytes().ok_or_else(short)?;
+                let name = claims.name(name).ok_or_else(long_names)?;
                 // The name of the definition's language lies between.
-                let _ = fields.text().ok_or_else(short)?;
-                let definition = fields.lines().ok_or_else(short)?;
+                let _ = fields.bytes().ok_or_else(short)?;
+                let definition = claims.definition(fields.bytes().ok_or_else(short)?);
                 channels.schemas.insert(id, (name, definition));
             }
             op::CHANNEL => {
@@ -81,10 +81,14 @@ pub(super) fn each_message(
                 let schema: u16 = fields.number().ok_or_else(short)?;
                 let (schema, definition) =
                     channels.schemas.get(&schema).cloned().unwrap_or_default();
+                let mut name = || {
+                    let name = fields.bytes().ok_or_else(short)?;
+                    claims.name(name).ok_or_else(long_names)
+                };
                 let channel_of = Channel {
-                    topic: fields.text().ok_or_else(short)?,
+                    topic: name()?,
                     schema,
-                    encoding: fields.text().ok_or_else(short)?,
+                    encoding: name()?,
                     definition,
                 };
                 channels.channels.insert(id, channel_of);
@@ -124,7 +128,7 @@ pub(super) fn each_message(
 /// bytes that it has before anything is allocated.
 struct Fields<'a>(&'a [u8]);
 
-impl Fields<'_> {
+impl<'a> Fields<'a> {
     fn number(&mut self) -> Option<u16> {
         let (number, rest) = self.0.split_first_chunk()?;
         self.0 = rest;
@@ -137,18 +141,7 @@ impl Fields<'_> {
         Some(u32::from_le_bytes(*word))
     }
 
-    /// A text without control characters.
-    fn text(&mut self) -> Option<String> {
-        self.bytes().map(text)
-    }
-
-    /// A text of several lines, of which nothing is shown to users but names that are made of letters.
-    fn lines(&mut self) -> Option<Rc<str>> {
-        self.bytes()
-            .map(|bytes| String::from_utf8_lossy(bytes).into())
-    }
-
-    fn bytes(&mut self) -> Option<&[u8]> {
+    fn bytes(&mut self) -> Option<&'a [u8]> {
         let length = usize::try_from(self.word()?).ok()?;
         let (bytes, rest) = self.0.split_at_checked(length)?;
         self.0 = rest;

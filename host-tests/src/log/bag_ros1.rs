@@ -6,7 +6,8 @@
 
 use super::{
     channel::{
-        Channel, LONGEST_RECORD, MOST_TIMES_AT_ONCE, MOST_TIMES_IN_ALL, Show, budget, damaged, text,
+        Budget, Channel, LONG_NAMES, LONGEST_RECORD, MOST_CHANNELS, MOST_TIMES_AT_ONCE, Show,
+        UNPACKS_TOO_MUCH, budget, damaged,
     },
     source,
 };
@@ -26,9 +27,6 @@ use std::{
 const MAGIC: &[u8] = b"#ROSBAG V2.0\n";
 
 const REPAIR: &str = "copy it again, or recover what there is with `rosbag reindex`";
-
-/// The most connections of a bag. Chosen by hand.
-const MOST_CONNECTIONS: usize = 1 << 12;
 
 /// The longest header of a record, and the longest message definition, in bytes. Chosen by hand.
 const LONGEST_HEADER: u64 = 1 << 20;
@@ -76,7 +74,7 @@ fn cut(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
 struct Reading<'a> {
     path: &'a Path,
     channels: BTreeMap<u32, Channel>,
-    unpacked: u64,
+    claims: &'a mut Budget,
     length: u64,
 }
 
@@ -84,6 +82,7 @@ struct Reading<'a> {
 pub(super) fn each_message(
     path: &Path,
     progress: &ProgressBar,
+    claims: &mut Budget,
     show: Show,
 ) -> Result<Vec<Channel>, Failure> {
     let mut file = source::open(path, progress)?;
@@ -100,7 +99,7 @@ pub(super) fn each_message(
     let mut reading = Reading {
         path,
         channels: BTreeMap::new(),
-        unpacked: 0,
+        claims,
         length,
     };
     // A record has a header and data, each behind its length.
@@ -175,9 +174,8 @@ impl Reading<'_> {
         let claimed = header.word("size").map(u64::from);
         let claimed = claimed.ok_or_else(|| self.damaged("a chunk has no size"))?;
         let most = budget(self.length, MOST_TIMES_AT_ONCE).min(LONGEST_RECORD);
-        self.unpacked += claimed;
-        if claimed > most || self.unpacked > budget(self.length, MOST_TIMES_IN_ALL) {
-            return Err(self.damaged("the chunks unpack to too many times their size"));
+        if claimed > most || self.claims.unpack(claimed).is_none() {
+            return Err(self.damaged(UNPACKS_TOO_MUCH));
         }
         let mut unpacked = Vec::new();
         let limited = |reader: &mut dyn Read, unpacked: &mut Vec<u8>| {
@@ -236,17 +234,24 @@ impl Reading<'_> {
             op::CONNECTION => {
                 let connection = connection()?;
                 let fields = Fields(data);
+                let claims = &mut *self.claims;
+                let names = [
+                    claims.name(header.get("topic").unwrap_or_default()),
+                    claims.name(fields.get("type").unwrap_or_default()),
+                    claims.name(b"ros1"),
+                ];
+                let [Some(topic), Some(schema), Some(encoding)] = names else {
+                    return Err(self.damaged(LONG_NAMES));
+                };
+                let definition = fields.get("message_definition").unwrap_or_default();
                 let channel = Channel {
-                    topic: text(header.get("topic").unwrap_or_default()),
-                    schema: text(fields.get("type").unwrap_or_default()),
-                    encoding: "ros1".into(),
-                    definition: String::from_utf8_lossy(
-                        fields.get("message_definition").unwrap_or_default(),
-                    )
-                    .into(),
+                    topic,
+                    schema,
+                    encoding,
+                    definition: self.claims.definition(definition),
                 };
                 self.channels.insert(connection, channel);
-                if self.channels.len() > MOST_CONNECTIONS {
+                if self.channels.len() > MOST_CHANNELS {
                     return Err(self.damaged("the bag has too many connections"));
                 }
                 Ok(ControlFlow::Continue(()))

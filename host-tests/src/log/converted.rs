@@ -2,6 +2,7 @@
 
 use crate::failure::{Failure, Place};
 use std::{
+    fs::File,
     io::{self, BufWriter, ErrorKind, Write},
     path::{Path, PathBuf},
 };
@@ -21,19 +22,25 @@ pub(super) struct Converted {
 /// A text of bounded length that is being written.
 pub(super) struct Text {
     path: PathBuf,
-    out: BufWriter<NamedTempFile>,
+    out: BufWriter<File>,
     left: u64,
 }
 
 impl Text {
-    /// An empty text for a log of so many bytes.
-    pub(super) fn new(path: &Path, size: u64) -> Result<Self, Failure> {
+    /// An empty text for a log, in a temporary file.
+    pub(super) fn new(path: &Path, size: u64) -> Result<(Self, TempPath), Failure> {
         let file = NamedTempFile::new().map_err(|error| Place::file(path).io(&error))?;
-        Ok(Self {
+        let (file, temporary) = file.into_parts();
+        Ok((Self::to(path, size, file), temporary))
+    }
+
+    /// An empty text for a log of so many bytes, in a file.
+    pub(super) fn to(path: &Path, size: u64, file: File) -> Self {
+        Self {
             path: path.to_owned(),
             out: BufWriter::new(file),
             left: MOST_TEXT.saturating_add(size.saturating_mul(MOST_TIMES)),
-        })
+        }
     }
 
     /// Writes the names of the columns.
@@ -58,13 +65,9 @@ impl Text {
         }
     }
 
-    pub(super) fn finish(self, note: Option<String>) -> Result<Converted, Failure> {
-        let file = self.out.into_inner();
-        let file = file.map_err(|error| Place::file(&self.path).io(error.error()))?;
-        Ok(Converted {
-            text: file.into_temp_path(),
-            note,
-        })
+    /// Writes what is left.
+    pub(super) fn finish(mut self) -> Result<(), Failure> {
+        self.out.flush().map_err(|error| self.failure(&error))
     }
 }
 

@@ -1,6 +1,7 @@
 //! The dialects of text tables: what separates the values of a row, and whether a comma is their decimal point.
 
 use super::field::Text;
+use crate::failure::one_line;
 use csv::{ByteRecord, ReaderBuilder};
 use std::io::{self, BufRead, Read};
 
@@ -197,17 +198,13 @@ fn usual_width(records: &[ByteRecord]) -> usize {
 }
 
 fn texts_of(record: &ByteRecord) -> Vec<String> {
-    let text = |field: &[u8]| {
-        String::from_utf8_lossy(field)
-            .trim()
-            .replace(char::is_control, " ")
-    };
+    let text = |field: &[u8]| one_line(String::from_utf8_lossy(field).trim());
     record.iter().map(text).collect()
 }
 
 /// Words between blanks. A word in brackets belongs to the word before it.
 fn merged_brackets(line: &[u8]) -> Vec<String> {
-    let line = String::from_utf8_lossy(line);
+    let line = one_line(&String::from_utf8_lossy(line));
     let mut names: Vec<String> = Vec::new();
     let mut is_open = false;
     for word in line.split_whitespace() {
@@ -226,7 +223,7 @@ fn merged_brackets(line: &[u8]) -> Vec<String> {
 
 /// Names with single blanks in them, and at least two blanks between them.
 fn split_at_wide_blanks(line: &[u8]) -> Vec<String> {
-    let line = String::from_utf8_lossy(line).replace('\t', "  ");
+    let line = one_line(&String::from_utf8_lossy(line).replace('\t', "  "));
     let parts = line
         .split("  ")
         .map(str::trim)

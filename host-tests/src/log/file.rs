@@ -12,7 +12,10 @@ use super::{
 };
 #[cfg(feature = "bags")]
 use super::{bag, bag_folder};
-use crate::failure::{Failure, Place};
+use crate::{
+    failure::{Failure, Place},
+    regular_file::Hold,
+};
 use indicatif::ProgressBar;
 use std::path::Path;
 
@@ -94,6 +97,8 @@ pub fn read_in_two(
     share: f64,
     progress: &ProgressBar,
 ) -> Result<(Log, Log), Failure> {
+    // Both times the file is read to the same length.
+    let _hold = Hold::new(path);
     let whole = read(path, options, progress)?;
     let samples = whole.axes.iter().map(|axis| axis.accumulator.samples());
     let first = samples.max().unwrap_or(0) as f64 * (1.0 - share);
@@ -106,7 +111,8 @@ pub fn read_in_two(
 }
 
 /// Reads the first rows of a log, and the axes of the remaining rows. Without a number of first
-/// rows, all rows are read and there are no remaining axes.
+/// rows, all rows are read and there are no remaining axes. A log that grows meanwhile is read to the length that it had
+/// at first, or to the end of its last complete line there; one that becomes shorter is refused.
 fn read_parts(
     path: &Path,
     options: &Options,
@@ -114,11 +120,43 @@ fn read_parts(
     watch: Option<Watched>,
     progress: &ProgressBar,
 ) -> Result<(Log, Vec<Axis>), Failure> {
-    let wanted = (first, watch);
     let format = Format::of(path)?;
     if !format.has_topics() && options.topic.is_some() {
         return Err(Place::file(path).failure("this kind of log has no topics", "omit --topic"));
     }
+    let hold = Hold::new(path);
+    let read = || read_format(path, format, options, (first, watch), progress);
+    let mut read_so_far = read();
+    let (held, now) = hold.lengths();
+    if path.is_file() && now < held {
+        return Err(Place::file(path).failure(
+            "it became shorter while it was read",
+            "end what writes to it, and read it again",
+        ));
+    }
+    let grew = path.is_file() && now > held;
+    let is_text = format == Format::Text { gzip: false };
+    if grew && is_text && hold.cut_to_line()? {
+        read_so_far = read();
+    }
+    let (mut log, rest) = read_so_far?;
+    if grew {
+        let (held, _) = hold.lengths();
+        log.notes.push(format!(
+            "it grew while it was read: the first {held} bytes are the record"
+        ));
+    }
+    Ok((log, rest))
+}
+
+/// Reads a log of a known format.
+fn read_format(
+    path: &Path,
+    format: Format,
+    options: &Options,
+    wanted: (Option<u64>, Option<Watched>),
+    progress: &ProgressBar,
+) -> Result<(Log, Vec<Axis>), Failure> {
     match format {
         Format::Text { gzip } => {
             let text = csv::Csv::open(path, gzip)?;
@@ -150,6 +188,7 @@ fn read_parts(
         #[cfg(feature = "bags")]
         Format::Mcap | Format::Ros1 | Format::Sqlite | Format::Folder => {
             let files = bag_folder::files(path, format)?;
+            let _holds: Vec<Hold> = files.1.iter().map(|file| Hold::new(file)).collect();
             let others = bag::other_messages(path, (files.0, &files.1), options, progress)?;
             if let Some(table) = others {
                 return read_converted(&table, path, options, wanted, progress);

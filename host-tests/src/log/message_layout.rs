@@ -1,34 +1,19 @@
 //! Messages of ROS of any type, by the definition that a bag has of them.
 
-use super::imu_message::Encoding;
-use std::collections::BTreeMap;
+use super::{
+    imu_message::Encoding,
+    message_definition::{Field, Kind, LONGEST_LIST, columns, fields, is_shown},
+};
 
-/// Limits of what a damaged definition may claim: how deep types lie in each other, and how many numbers a message shows.
-/// Chosen by hand.
-const DEEPEST: usize = 12;
-const MOST_COLUMNS: usize = 200;
-
-/// Longer lists are images and scans, whose numbers are no columns.
-const LONGEST_LIST: usize = 16;
+/// The fields that a message may have for each of its bytes, and beside them: a type without fields takes no room.
+const MOST_FIELDS_PER_BYTE: usize = 16;
+const MOST_FIELDS: usize = 1 << 12;
 
 /// The fields of a message type in their order.
 #[derive(Debug)]
 pub(super) struct Layout {
-    fields: Vec<(String, Kind)>,
-}
-
-#[derive(Clone, Debug)]
-enum Kind {
-    /// A number of so many bytes.
-    Signed(usize),
-    Unsigned(usize),
-    Float(usize),
-    /// Seconds and nanoseconds.
-    Time,
-    Text,
-    Message(Vec<(String, Kind)>),
-    /// A list whose length stands before it, if it has none.
-    List(Box<Kind>, Option<usize>),
+    fields: Vec<Field>,
+    columns: Vec<String>,
 }
 
 /// A value of a column.
@@ -39,31 +24,16 @@ pub(super) enum Value {
 }
 
 impl Layout {
-    /// The layout that a definition describes, in the form of `.msg` files whose parts are separated by lines of `=`;
-    /// `None` if it is another form, or if a part is missing.
+    /// The layout that a definition describes; `None` if it cannot be read, or claims too much.
     pub(super) fn of(schema: &str, definition: &str) -> Option<Self> {
-        let mut parts: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
-        let mut part = "";
-        for line in definition.lines().map(str::trim) {
-            if let Some(name) = line.strip_prefix("MSG:") {
-                part = name.trim();
-                parts.entry(part).or_default();
-            } else if !line.starts_with("==") {
-                parts.entry(part).or_default().push(line);
-            }
-        }
-        let fields = fields(&parts, "", schema, 0)?;
-        let layout = Self { fields };
-        (layout.columns().len() <= MOST_COLUMNS).then_some(layout)
+        let fields = fields(schema, definition)?;
+        let columns = columns(&fields)?;
+        Some(Self { fields, columns })
     }
 
     /// The names of the numbers outside of lists of unknown length, as `imu.angular_velocity.x [rad/s]`.
-    pub(super) fn columns(&self) -> Vec<String> {
-        let mut names = Vec::new();
-        for (name, kind) in &self.fields {
-            name_columns(name, kind, &mut names);
-        }
-        names
+    pub(super) fn columns(&self) -> &[String] {
+        &self.columns
     }
 
     /// The values of a message; `None` if it is shorter than its definition.
@@ -77,120 +47,12 @@ impl Layout {
     }
 }
 
-/// The fields of a part of a definition. A name without a package is one of the package of the type that uses it.
-fn fields(
-    parts: &BTreeMap<&str, Vec<&str>>,
-    part: &str,
-    schema: &str,
-    depth: usize,
-) -> Option<Vec<(String, Kind)>> {
-    if depth > DEEPEST {
-        return None;
-    }
-    let package = schema.split('/').next().unwrap_or_default();
-    let mut found = Vec::new();
-    for line in parts.get(part)? {
-        let line = line.split('#').next().unwrap_or_default();
-        let mut words = line.split_whitespace();
-        let (Some(kind), Some(name)) = (words.next(), words.next()) else {
-            continue;
-        };
-        // A constant takes no room.
-        if name.contains('=') || words.next().is_some_and(|word| word.starts_with('=')) {
-            continue;
-        }
-        found.push((name.to_owned(), kind_of(parts, kind, package, depth)?));
-    }
-    Some(found)
-}
-
-fn kind_of(
-    parts: &BTreeMap<&str, Vec<&str>>,
-    name: &str,
-    package: &str,
-    depth: usize,
-) -> Option<Kind> {
-    if let Some((of, length)) = name
-        .strip_suffix(']')
-        .and_then(|name| name.rsplit_once('['))
-    {
-        let length = match length {
-            "" => None,
-            bounded if bounded.starts_with("<=") => None,
-            length => Some(length.parse().ok()?),
-        };
-        return Some(Kind::List(
-            kind_of(parts, of, package, depth)?.into(),
-            length,
-        ));
-    }
-    Some(match name {
-        "bool" | "byte" | "char" | "uint8" => Kind::Unsigned(1),
-        "uint16" => Kind::Unsigned(2),
-        "uint32" => Kind::Unsigned(4),
-        "uint64" => Kind::Unsigned(8),
-        "int8" => Kind::Signed(1),
-        "int16" => Kind::Signed(2),
-        "int32" => Kind::Signed(4),
-        "int64" => Kind::Signed(8),
-        "float32" => Kind::Float(4),
-        "float64" => Kind::Float(8),
-        "time" | "duration" => Kind::Time,
-        "builtin_interfaces/Time" | "builtin_interfaces/Duration" => Kind::Time,
-        "builtin_interfaces/msg/Time" | "builtin_interfaces/msg/Duration" => Kind::Time,
-        text if text.starts_with("string") => Kind::Text,
-        "Header" => return kind_of(parts, "std_msgs/Header", package, depth),
-        name => {
-            let short = name.replace("/msg/", "/");
-            let full = format!("{package}/{name}");
-            let is = |part: &&&str| {
-                let part = part.replace("/msg/", "/");
-                part == short || part == full
-            };
-            let part = parts.keys().find(is)?;
-            Kind::Message(fields(parts, part, part, depth + 1)?)
-        }
-    })
-}
-
-/// A covariance is no measurement.
-fn is_shown(name: &str) -> bool {
-    !name.contains("covariance")
-}
-
-fn name_columns(name: &str, kind: &Kind, names: &mut Vec<String>) {
-    match kind {
-        _ if !is_shown(name) || names.len() > MOST_COLUMNS => {}
-        Kind::Signed(_) | Kind::Unsigned(_) | Kind::Float(_) => names.push(with_unit(name)),
-        Kind::Time => names.push(format!("{name} [ns]")),
-        Kind::Message(fields) => {
-            for (field, kind) in fields {
-                name_columns(&format!("{name}.{field}"), kind, names);
-            }
-        }
-        Kind::List(of, Some(length)) if *length <= LONGEST_LIST => {
-            for place in 0..*length {
-                name_columns(&format!("{name}[{place}]"), of, names);
-            }
-        }
-        Kind::Text | Kind::List(..) => {}
-    }
-}
-
-/// The units that ROS prescribes (REP 103).
-fn with_unit(name: &str) -> String {
-    let units = [
-        ("angular_velocity.", "rad/s"),
-        ("linear_acceleration.", "m/s^2"),
-    ];
-    let known = units.iter().find(|(quantity, _)| name.contains(quantity));
-    known.map_or_else(|| name.to_owned(), |(_, unit)| format!("{name} [{unit}]"))
-}
-
 /// Reads a message from its beginning.
 struct Reader<'a> {
     bytes: &'a [u8],
     at: usize,
+    /// The number of fields that may still come.
+    left: usize,
     /// ROS 2 aligns a number to its own size.
     is_aligned: bool,
     is_big: bool,
@@ -209,6 +71,9 @@ impl<'a> Reader<'a> {
         Some(Self {
             bytes,
             at: 0,
+            left: MOST_FIELDS_PER_BYTE
+                .saturating_mul(bytes.len())
+                .saturating_add(MOST_FIELDS),
             is_aligned: encoding == Encoding::Cdr,
             is_big,
         })
@@ -235,6 +100,7 @@ impl<'a> Reader<'a> {
 
     /// Reads a field, and keeps its values if it is shown.
     fn field(&mut self, name: &str, kind: &Kind, values: Option<&mut Vec<Value>>) -> Option<()> {
+        self.left = self.left.checked_sub(1)?;
         let mut values = values.filter(|_| is_shown(name));
         match kind {
             Kind::Message(fields) => {
@@ -352,6 +218,23 @@ mod tests {
         assert!(Layout::of("a/B", "C c").is_none());
         assert!(Layout::of("a/B", "C c\n===\nMSG: a/C\nC c").is_none());
         assert!(Layout::of("a/B", "C[99999999] c\n===\nMSG: a/C\nfloat64[16] c").is_some());
+        // Each of them would take minutes, or gigabytes.
+        let wide = "C c\n".repeat(99);
+        let parts = |name: char| format!("===\nMSG: a/{name}\n");
+        let names = "CDEFGHIJKLM";
+        let nested = |lines: &str| -> String {
+            let types = names.chars().zip(names.chars().skip(1));
+            let part = |(name, next): (char, char)| {
+                let lines = lines.replace('C', &next.to_string());
+                format!("{}{lines}", parts(name))
+            };
+            types.map(part).collect()
+        };
+        let ends = format!("{}string s", parts('M'));
+        assert!(Layout::of("a/B", &format!("{wide}{}{ends}", nested(&wide))).is_none());
+        let lists = "C[16] c\n";
+        assert!(Layout::of("a/B", &format!("{lists}{}{ends}", nested(lists))).is_none());
+        assert!(Layout::of("a/B", &format!("float64 {}", "x".repeat(9999))).is_none());
         let nothing = Layout::of("a/B", "C[] c\n===\nMSG: a/C\n").unwrap();
         assert_eq!(nothing.read(&[0xff; 16], Encoding::Ros1), None);
     }

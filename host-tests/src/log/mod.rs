@@ -86,6 +86,8 @@ mod axis_names;
 #[cfg(feature = "bags")]
 mod bag;
 #[cfg(feature = "bags")]
+mod bag_database;
+#[cfg(feature = "bags")]
 mod bag_folder;
 #[cfg(feature = "bags")]
 mod bag_mcap;
@@ -115,6 +117,8 @@ mod hands;
 #[cfg(feature = "bags")]
 mod imu_message;
 mod lines;
+#[cfg(feature = "bags")]
+mod message_definition;
 #[cfg(feature = "bags")]
 mod message_layout;
 mod metadata;
@@ -174,6 +178,8 @@ pub use octaves::accumulate;
 pub(crate) use places::Places;
 use serde::{Deserialize, Serialize};
 pub use spectrogram::Spectrogram;
+#[cfg(feature = "tables")]
+pub use tables::apart::answer as answer_about_table;
 
 /// The number of octaves that the host accumulates. They cannot overflow, and they suffice for
 /// records of years.

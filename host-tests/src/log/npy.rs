@@ -15,7 +15,6 @@ use crate::{
 };
 use indicatif::ProgressBar;
 use std::{
-    fs::File,
     io::{ErrorKind, Read, Seek, SeekFrom},
     path::{Path, PathBuf},
 };
@@ -95,7 +94,7 @@ impl Npy {
     /// The first numbers of each column, in either memory order.
     fn heads(&self, width: u64) -> Result<Vec<Vec<f64>>, Failure> {
         let fail = |error| self.failure(None, &error);
-        let mut file = File::open(&self.path).map_err(fail)?;
+        let (mut file, _) = regular_file::open(&self.path)?;
         read_header(&self.path, &mut file)?;
         let start = file.stream_position().map_err(fail)?;
         let mut heads = Vec::new();

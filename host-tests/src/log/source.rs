@@ -8,7 +8,6 @@ use crate::{
 use flate2::bufread::MultiGzDecoder;
 use indicatif::ProgressBar;
 use std::{
-    fs::File,
     io::{BufRead, BufReader, Read, Seek, SeekFrom},
     path::Path,
 };
@@ -60,6 +59,33 @@ pub(super) enum TableKind {
     Matlab,
     Parquet,
     Workbook,
+}
+
+impl TableKind {
+    #[cfg(feature = "tables")]
+    pub(super) const ALL: [Self; 7] = [
+        Self::Ardupilot,
+        Self::Arrow,
+        Self::Betaflight,
+        Self::Hdf5,
+        Self::Matlab,
+        Self::Parquet,
+        Self::Workbook,
+    ];
+
+    /// Its name, by which programs know it.
+    #[cfg(feature = "tables")]
+    pub(super) const fn name(self) -> &'static str {
+        match self {
+            Self::Ardupilot => "ardupilot",
+            Self::Arrow => "arrow",
+            Self::Betaflight => "betaflight",
+            Self::Hdf5 => "hdf5",
+            Self::Matlab => "matlab",
+            Self::Parquet => "parquet",
+            Self::Workbook => "workbook",
+        }
+    }
 }
 
 impl Format {
@@ -207,14 +233,13 @@ pub(super) fn open_text(
 
 /// Whether the last line of a file has a line end.
 pub(super) fn ends_with_line(path: &Path) -> Result<bool, Failure> {
-    let last = || {
-        let mut file = File::open(path)?;
-        let mut last = [0];
-        file.seek(SeekFrom::End(-1))?;
-        file.read_exact(&mut last)?;
-        Ok(last == *b"\n")
-    };
-    last().map_err(|error| Place::file(path).io(&error))
+    let (mut file, _) = regular_file::open(path)?;
+    let mut last = [0];
+    let read = file
+        .seek(SeekFrom::End(-1))
+        .and_then(|_| file.read_exact(&mut last));
+    read.map_err(|error| Place::file(path).io(&error))?;
+    Ok(last == *b"\n")
 }
 
 /// A text that fails when more than a number of bytes are read from it.

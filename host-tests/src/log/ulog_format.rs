@@ -1,5 +1,6 @@
 //! The formats of ULog messages: the names, types and offsets of their fields.
 
+use crate::failure::one_line;
 use std::collections::HashMap;
 
 /// The deepest nesting of formats that is accepted. A deeper one is taken for a circular definition.
@@ -142,7 +143,7 @@ impl Formats {
             Ok(Declaration {
                 kind: kind.to_owned(),
                 count,
-                name: name.trim().replace(char::is_control, " "),
+                name: one_line(name.trim()),
             })
         });
         let declarations = declarations.take(MOST_DECLARED + 1);

@@ -8,6 +8,7 @@ use std::{
 };
 
 use super::ulog_format::Formats;
+use crate::failure::one_line;
 
 const MAGIC: [u8; 7] = *b"ULog\x01\x12\x35";
 
@@ -146,7 +147,7 @@ impl<R: BufRead> Messages<R> {
                     return Err("a subscription names a topic of more than 256 bytes".into());
                 }
                 let subscription = Subscription {
-                    topic: String::from_utf8_lossy(topic).replace(char::is_control, " "),
+                    topic: one_line(&String::from_utf8_lossy(topic)),
                     instance: *instance,
                 };
                 let identity = u16::from_le_bytes([*low, *high]);

@@ -19,6 +19,7 @@ mod command_line;
 mod compare;
 mod curve_file;
 mod cuts;
+mod databases;
 mod decode;
 mod diagnose;
 mod drawings;
@@ -50,5 +51,8 @@ mod report_layout;
 mod report_view;
 mod schema;
 mod simulate;
+mod untrusted;
 mod views;
 mod watch;
+#[cfg(unix)]
+mod watch_ends;

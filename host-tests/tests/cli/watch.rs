@@ -27,13 +27,13 @@ const AXES: [&str; 2] = ["left", "right"];
 
 /// A line that is sent: counts, or text that is not a count.
 #[derive(Clone, Copy)]
-enum Sent {
+pub(crate) enum Sent {
     Sample([i32; 2]),
     Garbled,
 }
 
 impl Sent {
-    fn line(self) -> String {
+    pub(crate) fn line(self) -> String {
         match self {
             Self::Sample([a, b]) => format!("{a},{b}\n"),
             Self::Garbled => "12,\u{1}x\n".into(),
@@ -41,7 +41,7 @@ impl Sent {
     }
 }
 
-fn lines(number: usize, seed: u64) -> Vec<Sent> {
+pub(crate) fn lines(number: usize, seed: u64) -> Vec<Sent> {
     let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
     let line = |_| match random.random_range(0..1000) {
         0 => Sent::Garbled,
@@ -143,8 +143,8 @@ fn expected(sent: &[Sent], samples: u64, gaps: u64) -> CurveFile {
 
 /// Asserts that the saved curve is that of a prefix of what was sent, and returns the number of
 /// samples in the prefix.
-fn check_prefix(folder: &Path, sent: &[Sent]) -> u64 {
-    let curves = saved(folder);
+pub(crate) fn check_prefix(file: &Path, sent: &[Sent]) -> u64 {
+    let curves = CurveFile::read(file).unwrap();
     let (samples, gaps) = (curves.axes[0].samples, curves.axes[0].gaps);
     assert_eq!(curves, expected(sent, samples, gaps));
     samples
@@ -209,7 +209,7 @@ fn interrupted_record_is_a_prefix_with_all_samples_flushed_before() {
             String::from_utf8_lossy(&ended.stderr)
         );
         sender.join().unwrap();
-        let samples = check_prefix(folder.path(), &sent);
+        let samples = check_prefix(&folder.path().join("curve.json"), &sent);
         assert!(samples >= well_before, "{samples} of {well_before}");
         let printed = String::from_utf8(ended.stdout).unwrap();
         assert!(
@@ -245,7 +245,10 @@ fn input_that_ends_is_saved_to_its_last_line_even_without_a_line_end() {
         .iter()
         .filter(|line| matches!(line, Sent::Sample(_)))
         .count();
-    assert_eq!(check_prefix(folder.path(), &sent), samples as u64);
+    assert_eq!(
+        check_prefix(&folder.path().join("curve.json"), &sent),
+        samples as u64
+    );
     let garbled = sent.len() - samples;
     let errors = String::from_utf8(ended.stderr).unwrap();
     assert!(garbled > 0 && errors.starts_with(&format!("allanite: invalid lines: {garbled}, ")));
@@ -259,7 +262,8 @@ fn fit_is_printed_and_failed_saves_are_announced_if_the_curve_cannot_be_saved() 
     std::fs::create_dir(&inner).unwrap();
     let more = ["--save-every", "0.05", "--output", "../inner/curve.json"];
     let arguments = ["watch", "--rate", "100", "--scale", "0.01"];
-    let mut child = piped(&mut command(&inner, &[&arguments[..], &more].concat()));
+    let mut command = command(&inner, &[&arguments[..], &more].concat());
+    let mut child = piped(command.env("TMPDIR", folder.path()));
     let mut pipe = child.stdin.take().unwrap();
     for line in lines(3000, 11) {
         pipe.write_all(line.line().as_bytes()).unwrap();
@@ -304,7 +308,7 @@ fn curve_is_saved_regularly_and_complete_at_every_moment() {
     wait_for_curve(folder.path(), &mut child);
     let mut last = 0;
     for _ in 0..40 {
-        let samples = check_prefix(folder.path(), &sent);
+        let samples = check_prefix(&folder.path().join("curve.json"), &sent);
         assert!(samples >= last);
         last = samples;
         thread::sleep(Duration::from_millis(7));
@@ -313,7 +317,7 @@ fn curve_is_saved_regularly_and_complete_at_every_moment() {
     child.kill().unwrap();
     child.wait().unwrap();
     sender.join().unwrap();
-    assert!(check_prefix(folder.path(), &sent) >= last);
+    assert!(check_prefix(&folder.path().join("curve.json"), &sent) >= last);
 }
 
 #[test]

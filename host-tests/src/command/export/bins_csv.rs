@@ -1,6 +1,7 @@
 //! The spectrum and the course of a record as CSV tables, in radians.
 
 use super::characterisation::Characterisation;
+use crate::command::output::cell::cell;
 use csv::{QuoteStyle, WriterBuilder};
 
 /// The comment that explains the columns of the spectrum.
@@ -27,7 +28,7 @@ pub(super) fn spectrum(known: &Characterisation) -> Result<Option<String>, csv::
     let rows = known.axes.iter().flat_map(|axis| {
         axis.bins.iter().map(|bin| {
             [
-                axis.name.clone(),
+                cell(&axis.name),
                 bin.frequency_hz.to_string(),
                 bin.density.to_string(),
                 bin.standard_error.to_string(),
@@ -47,7 +48,7 @@ pub(super) fn course(known: &Characterisation) -> Result<Option<String>, csv::Er
     let rows = known.axes.iter().flat_map(|axis| {
         axis.blocks.iter().map(|block| {
             [
-                axis.name.clone(),
+                cell(&axis.name),
                 block.start_s.to_string(),
                 block.duration_s.to_string(),
                 block.samples.to_string(),

@@ -1,6 +1,7 @@
 //! The curve as a CSV table, with deviations in rad/s.
 
 use super::characterisation::Characterisation;
+use crate::command::output::cell::cell;
 use csv::{QuoteStyle, WriterBuilder};
 
 /// The comment that explains the columns.
@@ -29,7 +30,7 @@ pub(super) fn table(known: &Characterisation) -> Result<String, csv::Error> {
     for axis in &known.axes {
         for octave in &axis.octaves {
             writer.write_record([
-                axis.name.clone(),
+                cell(&axis.name),
                 octave.tau_s.to_string(),
                 octave.m.to_string(),
                 octave.differences.to_string(),

@@ -13,7 +13,7 @@ const MOST_LINKS: usize = 40;
 
 /// A file that is being written. A regular file is a temporary file in the folder of its final path
 /// until [`commit`](Self::commit) moves it there; without that it is removed. A device or a pipe is
-/// written to as it is. A symbolic link is followed, so that it remains.
+/// written to as it is. A symbolic link is followed, so that it remains. A file that is replaced keeps its permissions.
 pub(crate) struct OutputFile {
     path: PathBuf,
     target: Target,
@@ -54,11 +54,18 @@ impl OutputFile {
                 "name another output",
             ));
         }
+        let is_locked = |there: &fs::Metadata| there.permissions().readonly();
+        if there.as_ref().is_some_and(is_locked) {
+            return Err(Place::file(path).failure(
+                "is protected from writing",
+                "name another output, or allow writing to it",
+            ));
+        }
         let folder = match end.parent() {
             Some(folder) if folder != Path::new("") => folder,
             _ => Path::new("."),
         };
-        let temporary = Temporary::create_in(folder).map_err(|error| {
+        let temporary = Temporary::create(folder, there.as_ref()).map_err(|error| {
             if error.kind() == io::ErrorKind::NotFound {
                 Place::file(path).failure("its folder does not exist", "create the folder first")
             } else {

@@ -1,6 +1,7 @@
 //! The output of commands: files, progress, and the words, numbers and units of tables and JSON
 //! documents.
 
+pub(super) mod cell;
 pub(super) mod disturbance;
 pub(super) mod drawn_frame;
 pub(super) mod event_json;

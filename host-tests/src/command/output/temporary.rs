@@ -2,6 +2,7 @@
 
 use std::{
     collections::BTreeSet,
+    fs::Metadata,
     io::{self, Write},
     path::{Path, PathBuf},
     sync::{Mutex, MutexGuard, PoisonError},
@@ -27,6 +28,9 @@ pub(crate) fn remove_when_interrupted() {}
 /// program. Where interruptions cannot be caught, they end the program as usual.
 #[cfg(not(target_family = "wasm"))]
 pub(crate) fn remove_when_interrupted() {
+    // A file beyond the limit of its size is an error of writing it, and no end of the program.
+    #[cfg(unix)]
+    let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, std::sync::Arc::default());
     let _ = ctrlc::set_handler(|| {
         // The lock is held until the program has ended, so that no further file is created.
         let existing = existing();
@@ -45,8 +49,14 @@ pub(crate) struct Temporary {
 }
 
 impl Temporary {
-    /// Creates a file in a folder.
+    /// Creates a file in a folder, with the permissions of any new file.
     pub(crate) fn create_in(folder: &Path) -> io::Result<Self> {
+        Self::create(folder, None)
+    }
+
+    /// Creates a file in a folder that gets the permissions of the file that it is to replace, if there is one. It never
+    /// has more, so that nobody reads a private file while it is written.
+    pub(crate) fn create(folder: &Path, replaced: Option<&Metadata>) -> io::Result<Self> {
         #[cfg_attr(
             not(unix),
             expect(unused_mut, reason = "only Unix has permissions to set")
@@ -57,10 +67,15 @@ impl Temporary {
             use std::os::unix::fs::PermissionsExt;
             // The permissions of any new file, to which the process' mask applies. Without this line a
             // temporary file would be private.
-            builder.permissions(std::fs::Permissions::from_mode(0o666));
+            let mode = replaced.map_or(0o666, |file| file.permissions().mode() & 0o777);
+            builder.permissions(std::fs::Permissions::from_mode(mode));
         }
         let mut existing = existing();
         let file = builder.tempfile_in(folder)?;
+        if let Some(replaced) = replaced {
+            // The process' mask may have taken some away. A file system without permissions has none to set.
+            let _ = file.as_file().set_permissions(replaced.permissions());
+        }
         let path = file.path().to_owned();
         existing.insert(path.clone());
         Ok(Self {

@@ -1,5 +1,7 @@
-//! Sentences that are broken between words where a terminal is narrower than they are.
+//! Sentences that are broken between words where a terminal is narrower than they are, in text that shows all of its
+//! characters.
 
+use crate::visible::visible;
 use console::Term;
 use std::io::{self, Write};
 use textwrap::{Options, core::display_width};
@@ -34,16 +36,21 @@ impl<W: Write> Wrapped<W> {
 
     fn write_line(&mut self) -> io::Result<()> {
         let line = std::mem::take(&mut self.line);
-        match (self.width, std::str::from_utf8(&line)) {
-            (Some(width), Ok(text)) => self.to.write_all(broken(text, width).as_bytes()),
-            _ => self.to.write_all(&line),
+        let Ok(text) = std::str::from_utf8(&line) else {
+            return self.to.write_all(&line);
+        };
+        let text = visible(text);
+        match self.width {
+            Some(width) => self.to.write_all(broken(&text, width).as_bytes()),
+            None => self.to.write_all(text.as_bytes()),
         }
     }
 }
 
 impl<W: Write> Write for Wrapped<W> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        if self.width.is_none() {
+        // Nearly all that is written to a file or another program is ASCII, and needs no line.
+        if self.width.is_none() && self.line.is_empty() && is_plain(bytes) {
             return self.to.write(bytes);
         }
         for line in bytes.split_inclusive(|&byte| byte == b'\n') {
@@ -59,6 +66,11 @@ impl<W: Write> Write for Wrapped<W> {
         self.write_line()?;
         self.to.flush()
     }
+}
+
+/// Whether bytes are characters of ASCII that can be seen.
+fn is_plain(bytes: &[u8]) -> bool {
+    bytes.iter().all(|&byte| byte < 0x7f)
 }
 
 /// A line with its end, broken if it is wider than so many columns and a sentence. A row of a table, in which more than
@@ -99,6 +111,24 @@ fn broken(line: &str, width: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn characters_that_cannot_be_seen_are_escaped_however_they_are_written() {
+        let text = "a\u{202e}gnp, τ\n\u{200b}end".as_bytes();
+        for piece in 1..=text.len() {
+            let mut wrapped = Wrapped {
+                to: Vec::new(),
+                width: None,
+                line: Vec::new(),
+            };
+            for bytes in text.chunks(piece) {
+                wrapped.write_all(bytes).unwrap();
+            }
+            wrapped.flush().unwrap();
+            let shown = String::from_utf8(wrapped.to).unwrap();
+            assert_eq!(shown, "a\\u202egnp, τ\n\\u200bend", "pieces of {piece}");
+        }
+    }
 
     #[test]
     fn sentences_are_continued_below_their_beginning() {

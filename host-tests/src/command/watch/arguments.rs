@@ -40,8 +40,8 @@ pub(in crate::command) struct Arguments {
     /// The curve file (.json) to write at the end, on an interruption and at intervals
     #[arg(long, short, value_name = "CURVE.json")]
     pub(super) output: Option<PathBuf>,
-    /// Seconds from one saving of the curve to the next
-    #[arg(long, value_name = "SECONDS", default_value_t = 60.0)]
+    /// Seconds from one saving of the curve to the next, which is what a power cut can lose
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.5)]
     pub(super) save_every: f64,
     /// Seconds from one diagnosis to the next
     #[arg(long, value_name = "SECONDS", default_value_t = 60.0)]

@@ -4,11 +4,17 @@ mod arguments;
 #[cfg(feature = "watch")]
 mod diagnosis;
 #[cfg(feature = "watch")]
+mod recorder;
+#[cfg(feature = "watch")]
 mod recording;
+#[cfg(feature = "watch")]
+mod saving;
 #[cfg(feature = "watch")]
 mod screen;
 #[cfg(feature = "watch")]
 mod session;
+#[cfg(feature = "watch")]
+mod signals;
 #[cfg(feature = "watch")]
 mod source;
 #[cfg(feature = "watch")]

@@ -40,6 +40,16 @@ pub(super) struct Recording {
     unfinished: bool,
 }
 
+/// What is recorded at a moment.
+pub(super) struct Snapshot {
+    pub(super) rate_hz: f64,
+    pub(super) samples: u64,
+    pub(super) gaps: u64,
+    pub(super) garbled: u64,
+    /// The curves, of which there are none while the record is too short.
+    pub(super) curves: Vec<AxisCurve>,
+}
+
 /// What the numbers of a line are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Numbers {
@@ -246,9 +256,15 @@ impl Recording {
         })
     }
 
-    /// Samples per second.
-    pub(super) const fn rate_hz(&self) -> f64 {
-        self.rate_hz
+    /// What is recorded so far.
+    pub(super) fn snapshot(&self) -> Snapshot {
+        Snapshot {
+            rate_hz: self.rate_hz,
+            samples: self.samples(),
+            gaps: self.gaps(),
+            garbled: self.garbled(),
+            curves: self.curves().ok().flatten().unwrap_or_default(),
+        }
     }
 
     /// The curves of the samples so far, or `None` while there are fewer than two octaves.

@@ -12,10 +12,10 @@ use allanite::Comparison;
 use crossterm::{
     cursor::{Hide, Show},
     execute,
-    terminal::{EnterAlternateScreen, LeaveAlternateScreen},
+    terminal::{self, EnterAlternateScreen, LeaveAlternateScreen},
 };
 use ratatui::{
-    Frame, Terminal,
+    Frame, Terminal, TerminalOptions, Viewport,
     backend::CrosstermBackend,
     layout::{Constraint, Layout, Rect},
     style::{Color, Modifier, Style},
@@ -37,7 +37,20 @@ const COLOURS: [Color; 6] = [
 
 /// The terminal while a recording is shown. Dropping the screen restores the terminal.
 pub(super) struct Screen {
-    terminal: Terminal<CrosstermBackend<Stdout>>,
+    /// It is there until this is dropped.
+    terminal: Option<Terminal<CrosstermBackend<Stdout>>>,
+    area: Rect,
+}
+
+/// The largest screen that is drawn, in columns and rows. A terminal may claim a size that fits into no memory.
+const MOST_COLUMNS: u16 = 500;
+const MOST_ROWS: u16 = 250;
+
+/// The size of the terminal, as far as it is drawn.
+fn area() -> io::Result<Rect> {
+    let (columns, rows) = terminal::size()?;
+    let [columns, rows] = [columns.min(MOST_COLUMNS), rows.min(MOST_ROWS)];
+    Ok(Rect::new(0, 0, columns, rows))
 }
 
 impl Screen {
@@ -46,16 +59,30 @@ impl Screen {
     /// # Errors
     /// When the terminal cannot be written to.
     pub(super) fn open() -> io::Result<Self> {
-        let terminal = Terminal::new(CrosstermBackend::new(io::stdout()))?;
+        let area = area()?;
+        let options = TerminalOptions {
+            viewport: Viewport::Fixed(area),
+        };
+        let terminal = Terminal::with_options(CrosstermBackend::new(io::stdout()), options)?;
         // The screen exists before the switch, so that an error drops it and restores the terminal.
-        let screen = Self { terminal };
+        let screen = Self {
+            terminal: Some(terminal),
+            area,
+        };
         execute!(io::stdout(), EnterAlternateScreen, Hide)?;
         Ok(screen)
     }
 
     /// Draws the status of a recording.
     pub(super) fn draw(&mut self, status: &Status) -> io::Result<()> {
-        self.terminal.draw(|frame| draw(frame, status))?;
+        let area = area()?;
+        if let Some(terminal) = &mut self.terminal {
+            if area != self.area {
+                terminal.resize(area)?;
+                self.area = area;
+            }
+            terminal.draw(|frame| draw(frame, status))?;
+        }
         Ok(())
     }
 }
@@ -64,6 +91,10 @@ impl Drop for Screen {
     fn drop(&mut self) {
         // An error is ignored, because nothing can be done about a terminal that is gone.
         let _ = execute!(io::stdout(), LeaveAlternateScreen, Show);
+        // Its own end would show the cursor once more, and panic where standard error is the terminal that is gone.
+        if let Some(terminal) = self.terminal.take() {
+            std::mem::forget(terminal);
+        }
     }
 }
 

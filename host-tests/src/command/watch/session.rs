@@ -1,16 +1,19 @@
 //! The session of `watch`: reads, accumulates, shows and saves a recording.
 //!
-//! A thread reads the input. The main thread accumulates it and at intervals fits and shows it. At the
-//! end of the input, and on SIGINT (Ctrl-C) or SIGTERM, everything that has been read is accumulated,
-//! the curve is saved and the last fit is printed. The curve is also saved at intervals, each time as a
+//! A thread reads the input, and a second one accumulates and saves it. The main thread at intervals fits and shows what
+//! is recorded. At the end of the input, and on SIGINT (Ctrl-C), SIGTERM, SIGQUIT or SIGHUP, everything that has been read
+//! is accumulated, the curve is saved and the last fit is printed. The curve is also saved at intervals, each time as a
 //! complete file.
 
 use super::{
     arguments::Arguments,
     diagnosis::{Diagnoser, Found},
+    recorder::{Flags, Recorder},
     recording::{Numbers, Recording},
+    saving::Saving,
     screen::Screen,
-    source::{Received, Source},
+    signals,
+    source::Source,
     status::Status,
 };
 use crate::{
@@ -19,29 +22,16 @@ use crate::{
         input::record,
         output::{file::OutputFile, progress},
     },
-    curve_file::CurveFile,
-    failure::{Failure, Place, one_line, plural, report},
+    failure::{Failure, Place, plural, report},
 };
 use console::Term;
 use std::{
-    io::{self, Write},
-    path::Path,
-    sync::{
-        Arc,
-        atomic::{AtomicBool, Ordering::Relaxed},
-        mpsc::{Receiver, RecvTimeoutError},
-    },
+    io::Write,
     time::{Duration, Instant},
 };
 
-/// Longest wait for input before signals and the clock are checked. Chosen by hand.
+/// Longest wait before the clock is checked. Chosen by hand.
 const MOMENT: Duration = Duration::from_millis(50);
-
-/// After an interruption, input that arrives without a longer pause counts as received before it.
-/// Chosen by hand.
-const PAUSE: Duration = Duration::from_millis(20);
-/// After an interruption, a source that never pauses is read for this long at most. Chosen by hand.
-const PATIENCE: Duration = Duration::from_millis(500);
 
 /// Time from one drawing of the screen to the next. Chosen by hand.
 const FRAME: Duration = Duration::from_millis(1000);
@@ -80,9 +70,8 @@ pub(in crate::command) fn run(
         None if arguments.image => Source::Image,
         None => Source::StandardInput,
     };
-    let interrupted = Arc::new(AtomicBool::new(false));
-    let flag = interrupted.clone();
-    ctrlc::set_handler(move || flag.store(true, Relaxed)).map_err(|error| {
+    let flags = Flags::default();
+    signals::catch(&flags).map_err(|error| {
         Failure::option(
             format!("interruptions cannot be caught: {error}"),
             "start the program in another environment",
@@ -99,14 +88,18 @@ pub(in crate::command) fn run(
         None if arguments.image => "the image",
         None => "standard input",
     };
+    let saving = Saving::new(arguments.output.clone());
+    let recorder = Recorder::start(recording, received, saving, save_every, flags);
+    let recorder = recorder.map_err(|error| {
+        Failure::option(
+            format!("no thread can be started: {error}"),
+            "end other programs",
+        )
+    })?;
     let mut watch = Watch {
-        recording,
+        recorder,
         place,
-        received,
-        interrupted,
-        path: arguments.output.as_deref(),
-        saved: None,
-        trouble: None,
+        announced: None,
         diagnoser: Diagnoser::new(diagnose_every),
         screen,
     };
@@ -115,27 +108,19 @@ pub(in crate::command) fn run(
     } else {
         print_every
     };
-    let ended = watch.follow(every, save_every, output);
-    // Even after a failure the terminal is restored and the samples received so far are saved.
+    let shown = watch.follow(every, output);
+    // Whatever the terminal does, the samples received so far are saved before it is restored.
+    let ended = watch.recorder.end();
     watch.screen = None;
-    if ended.as_ref().is_ok_and(|ended| *ended == Ended::Input) {
-        watch.recording.end();
-    }
     // Whatever failed, the fit is printed, because nothing else may be left of the record. The failure
     // is told last.
-    let saved = watch.save();
-    watch.trouble = saved.as_ref().err().map(Failure::to_string);
     let finished = watch.finish(output);
-    ended?;
-    saved?;
+    shown?;
+    if let Some(ended) = ended {
+        ended.received?;
+        ended.saved?;
+    }
     finished
-}
-
-/// What ended a recording.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Ended {
-    Input,
-    Interruption,
 }
 
 /// The length of time that an option gives in seconds.
@@ -154,83 +139,39 @@ fn seconds(option: &str, value: f64) -> Result<Duration, Failure> {
 
 /// The state of a session.
 struct Watch<'a> {
-    recording: Recording,
+    recorder: Recorder,
     /// Where the samples come from.
     place: &'a str,
-    received: Receiver<Received>,
-    interrupted: Arc<AtomicBool>,
-    path: Option<&'a Path>,
-    saved: Option<Instant>,
-    /// The message of the last saving, if it failed.
-    trouble: Option<String>,
+    /// The trouble with saving that was told last.
+    announced: Option<String>,
     diagnoser: Diagnoser,
     screen: Option<Screen>,
 }
 
 impl Watch<'_> {
-    /// Records and shows until the input ends or the user interrupts.
-    fn follow(
-        &mut self,
-        show_every: Duration,
-        save_every: Duration,
-        output: &mut impl Write,
-    ) -> Result<Ended, Failure> {
-        let (mut shown, mut saved) = (Instant::now(), Instant::now());
-        loop {
-            let ended = self.receive(MOMENT)?;
-            if self.interrupted.load(Relaxed) {
-                self.drain()?;
-                return Ok(Ended::Interruption);
-            }
-            if ended {
-                return Ok(Ended::Input);
-            }
-            if saved.elapsed() >= save_every {
-                let trouble = self.save().err().map(|failure| failure.to_string());
-                self.announce(trouble);
-                saved = Instant::now();
-            }
-            let recording = &self.recording;
-            self.diagnoser.advance(|| recording.curves().ok().flatten());
+    /// Shows the recording until it ends.
+    fn follow(&mut self, show_every: Duration, output: &mut impl Write) -> Result<(), Failure> {
+        let mut shown = Instant::now();
+        while !self.recorder.has_ended_within(MOMENT) {
+            self.announce();
+            let recorder = &self.recorder;
+            self.diagnoser
+                .advance(|| recorder.recording().curves().ok().flatten());
             if shown.elapsed() >= show_every {
                 self.show(output)?;
                 shown = Instant::now();
             }
         }
+        Ok(())
     }
 
-    /// Keeps the trouble with saving for the screen. Without a screen, trouble is told when it begins.
-    fn announce(&mut self, trouble: Option<String>) {
-        if let (Some(trouble), None, None) = (&trouble, &self.trouble, &self.screen) {
+    /// Tells trouble with saving when it begins, if there is no screen, which shows it all the time.
+    fn announce(&mut self) {
+        let trouble = self.recorder.saving().trouble().map(String::from);
+        if let (Some(trouble), None, None) = (&trouble, &self.announced, &self.screen) {
             report(format_args!("not saved: {trouble}"));
         }
-        self.trouble = trouble;
-    }
-
-    /// Takes the next bytes, if they arrive within this time. Returns true when the input has ended.
-    fn receive(&mut self, time: Duration) -> Result<bool, Failure> {
-        match self.received.recv_timeout(time) {
-            Ok(Received::Bytes(bytes)) => {
-                self.recording.take(&bytes);
-                Ok(false)
-            }
-            Ok(Received::Failure(failure)) => Err(failure),
-            Err(RecvTimeoutError::Timeout) => Ok(false),
-            Err(RecvTimeoutError::Disconnected) => Ok(true),
-        }
-    }
-
-    /// Takes the bytes that had arrived before the interruption.
-    fn drain(&mut self) -> Result<(), Failure> {
-        let begun = Instant::now();
-        while begun.elapsed() < PATIENCE {
-            match self.received.recv_timeout(PAUSE) {
-                Ok(Received::Bytes(bytes)) => self.recording.take(&bytes),
-                Ok(Received::Failure(failure)) => return Err(failure),
-                Err(_) => break,
-            }
-        }
-        Ok(())
+        self.announced = trouble;
     }
 
     fn show(&mut self, output: &mut impl Write) -> Result<(), Failure> {
@@ -243,64 +184,38 @@ impl Watch<'_> {
     }
 
     fn status(&self) -> Status {
-        let saving = match (&self.trouble, self.path, self.saved) {
-            (Some(trouble), ..) => format!("not saved: {trouble}"),
-            (None, None, _) => "not saved: --output was not given".into(),
-            (None, Some(path), None) => format!("{} is not saved yet", path.display()),
-            (None, Some(path), Some(at)) => {
-                format!(
-                    "{} was saved {} s ago",
-                    path.display(),
-                    at.elapsed().as_secs()
-                )
-            }
-        };
-        Status::of(&self.recording, &self.diagnoser, one_line(&saving))
-    }
-
-    /// Saves the curve as a complete file, if there is an output and the record is long enough.
-    fn save(&mut self) -> Result<(), Failure> {
-        let Some(path) = self.path else {
-            return Ok(());
-        };
-        // The record is still too short for a curve. If it stays so, `finish` reports that.
-        let Some(curves) = self.recording.curves()? else {
-            return Ok(());
-        };
-        let fail = |error: io::Error| Place::file(path).io(&error);
-        let json = CurveFile::new(curves).to_json();
-        let json = json.map_err(|error| fail(error.into()))?;
-        let mut file = OutputFile::create(path, [])?;
-        file.write_all(json.as_bytes()).map_err(fail)?;
-        file.commit()?;
-        self.saved = Some(Instant::now());
-        Ok(())
+        let saving = self.recorder.saving().sentence();
+        Status::of(self.recorder.snapshot(), &self.diagnoser, saving)
     }
 
     /// Prints the last fit in the form of `fit`, and what a diagnosis says of the whole recording.
     fn finish(&self, output: &mut impl Write) -> Result<(), Failure> {
-        if self.recording.curves()?.is_none() {
+        let recording = self.recorder.recording();
+        if recording.curves()?.is_none() {
             return Err(Failure::option(
                 format!(
                     "{}: received {} and {}, but a curve needs 9 samples",
                     self.place,
-                    plural(self.recording.samples(), "sample"),
-                    plural(self.recording.garbled(), "invalid line")
+                    plural(recording.samples(), "sample"),
+                    plural(recording.garbled(), "invalid line")
                 ),
-                self.recording.remedy().unwrap_or_else(|| {
+                recording.remedy().unwrap_or_else(|| {
                     "record longer, and check that each line has one whole number for each axis"
                         .into()
                 }),
             ));
         }
+        // The status locks the recording too.
+        drop(recording);
         let status = self.status();
-        if self.recording.garbled() > 0 && !progress::is_quiet() {
+        let recording = self.recorder.recording();
+        if recording.garbled() > 0 && !progress::is_quiet() {
             report(status.losses());
-            if let Some(remedy) = self.recording.remedy() {
+            if let Some(remedy) = recording.remedy() {
                 report(remedy);
             }
         }
-        if self.recording.is_unfinished() && !progress::is_quiet() {
+        if recording.is_unfinished() && !progress::is_quiet() {
             report("the last line has no line end: it may be cut off");
         }
         let unfitted: Vec<String> = status

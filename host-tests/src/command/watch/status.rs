@@ -2,7 +2,7 @@
 
 use super::{
     diagnosis::{Diagnoser, Found},
-    recording::Recording,
+    recording::Snapshot,
 };
 use crate::{
     command::{
@@ -47,10 +47,9 @@ pub(super) struct AxisStatus {
 
 impl Status {
     /// Fits the samples that every axis has so far. What is missing is what the last diagnosis found.
-    pub(super) fn of(recording: &Recording, diagnoser: &Diagnoser, saving: String) -> Self {
+    pub(super) fn of(recorded: Snapshot, diagnoser: &Diagnoser, saving: String) -> Self {
         let model = Model::ieee_952();
-        let curves = recording.curves().ok().flatten().unwrap_or_default();
-        let axes = curves.into_iter().map(|curve| {
+        let axes = recorded.curves.into_iter().map(|curve| {
             let name = curve.axis.clone();
             let is_constant = curve.octaves.iter().all(|octave| octave.sum == 0);
             // An axis that cannot be fitted yet may be fitted later.
@@ -75,10 +74,10 @@ impl Status {
             }
         });
         Self {
-            rate_hz: recording.rate_hz(),
-            samples: recording.samples(),
-            gaps: recording.gaps(),
-            garbled: recording.garbled(),
+            rate_hz: recorded.rate_hz,
+            samples: recorded.samples,
+            gaps: recorded.gaps,
+            garbled: recorded.garbled,
             saving,
             axes: axes.collect(),
         }
@@ -169,7 +168,10 @@ pub(super) fn waiting(coefficient: &Coefficient, length_s: f64) -> String {
 
 #[cfg(test)]
 pub(super) mod tests {
-    use super::{super::recording::Numbers, *};
+    use super::{
+        super::recording::{Numbers, Recording},
+        *,
+    };
     use crate::unit::Unit;
     use std::time::Duration;
 
@@ -201,7 +203,7 @@ pub(super) mod tests {
             std::thread::yield_now();
         }
         let saving = "curve.json was saved 3 s ago";
-        Status::of(&recording, &diagnoser, saving.into())
+        Status::of(recording.snapshot(), &diagnoser, saving.into())
     }
 
     #[test]

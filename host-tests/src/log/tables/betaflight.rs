@@ -11,14 +11,22 @@ use blackbox_log::{
     prelude::*,
     units::si::{acceleration::meter_per_second_squared, angular_velocity::degree_per_second},
 };
-use std::{fs, io::Write as _, path::Path};
+use std::{
+    fs,
+    io::{Read as _, Write as _},
+    path::Path,
+};
 
 pub(super) fn convert(
     path: &Path,
     topic: Option<&str>,
     text: &mut Text,
 ) -> Result<Option<String>, Wrong> {
-    let bytes = fs::read(path)?;
+    let opened = fs::File::open(path)?;
+    // A file that grows is read to the length that it has now.
+    let length = opened.metadata()?.len();
+    let mut bytes = Vec::new();
+    opened.take(length).read_to_end(&mut bytes)?;
     let file = File::new(&bytes);
     // One file may have the logs of several flights.
     let filters = FilterSet {

@@ -1,6 +1,7 @@
 //! Tables of other programs in binary. Each is rewritten as the text that logs are read from, in a temporary file, so that
 //! names, units, stamps and values are judged in one place.
 
+pub(in crate::log) mod apart;
 mod ardupilot;
 mod arrays;
 mod arrow;
@@ -8,24 +9,16 @@ mod betaflight;
 mod choice;
 mod hdf5;
 mod matlab;
+mod rewrite;
 mod workbook;
 mod wrong;
 
-use super::{
-    Options,
-    converted::{Converted, Text},
-    source::TableKind as Kind,
-};
-use crate::failure::{Failure, Place, one_line};
+use super::{Options, converted::Converted, source::TableKind as Kind};
+use crate::failure::{Failure, Place};
 use indicatif::ProgressBar;
-use std::{
-    panic::{self, AssertUnwindSafe},
-    path::Path,
-};
-use wrong::Wrong;
-
-/// The remedy of a damaged file.
-const COPY: &str = "copy or record the file again";
+use rewrite::rewrite;
+use std::{io, path::Path};
+use tempfile::NamedTempFile;
 
 /// Rewrites a table as text.
 ///
@@ -37,33 +30,11 @@ pub(in crate::log) fn convert(
     options: &Options,
     progress: &ProgressBar,
 ) -> Result<Converted, Failure> {
-    let here = || Place::file(path);
-    let size = path.metadata().map_or(0, |file| file.len());
-    progress.set_length(size);
-    let mut text = Text::new(path, size)?;
+    let io = |error: io::Error| Place::file(path).io(&error);
+    progress.set_length(path.metadata().map_or(0, |file| file.len()));
+    let text = NamedTempFile::new().map_err(io)?.into_temp_path();
     let topic = options.topic.as_deref();
-    let convert = || match kind {
-        Kind::Ardupilot => ardupilot::convert(path, topic, &mut text),
-        Kind::Arrow | Kind::Parquet => arrow::convert(path, kind, topic, &mut text),
-        Kind::Betaflight => betaflight::convert(path, topic, &mut text),
-        Kind::Hdf5 => hdf5::convert(path, topic, &mut text),
-        Kind::Matlab => matlab::convert(path, topic, &mut text),
-        Kind::Workbook => workbook::convert(path, topic, &mut text),
-    };
-    let converted = quietly(convert);
-    let note = converted.map_err(|wrong| match wrong {
-        Wrong::Io(error) => text.failure(&error),
-        Wrong::Damaged(what) => here().failure(format!("damaged: {}", one_line(&what)), COPY),
-        Wrong::Unfit(what, remedy) => here().failure(what, remedy),
-    })?;
-    text.finish(note)
-}
-
-/// Runs a reader of another project. Some of them panic at damaged files, which is reported like any other damage.
-fn quietly<T>(read: impl FnOnce() -> Result<T, Wrong>) -> Result<T, Wrong> {
-    let hook = panic::take_hook();
-    panic::set_hook(Box::new(|_| {}));
-    let read = panic::catch_unwind(AssertUnwindSafe(read));
-    panic::set_hook(hook);
-    read.unwrap_or_else(|_| Err(Wrong::damaged("its parts contradict each other")))
+    let note = apart::ask(path, kind, topic, &text);
+    let note = note.unwrap_or_else(|| rewrite(path, kind, topic, &text))?;
+    Ok(Converted { text, note })
 }

@@ -3,14 +3,14 @@
 use super::case::{Case, refused};
 use std::{fs, path::Path};
 
-fn fixture(name: &str) -> Vec<u8> {
+pub(super) fn fixture(name: &str) -> Vec<u8> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures");
     fs::read(folder.join(name)).unwrap()
 }
 
-const MAGIC: &[u8] = b"\x89MCAP0\r\n";
+pub(super) const MAGIC: &[u8] = b"\x89MCAP0\r\n";
 
-fn record(opcode: u8, content: &[u8]) -> Vec<u8> {
+pub(super) fn record(opcode: u8, content: &[u8]) -> Vec<u8> {
     long(opcode, content.len() as u64, content)
 }
 
@@ -19,16 +19,16 @@ fn long(opcode: u8, length: u64, content: &[u8]) -> Vec<u8> {
     [&[opcode], &length.to_le_bytes()[..], content].concat()
 }
 
-fn text(text: &str) -> Vec<u8> {
+pub(super) fn text(text: &str) -> Vec<u8> {
     [&(text.len() as u32).to_le_bytes(), text.as_bytes()].concat()
 }
 
 /// A bag of these records.
-fn bag(records: &[Vec<u8>]) -> Vec<u8> {
+pub(super) fn bag(records: &[Vec<u8>]) -> Vec<u8> {
     [MAGIC, &records.concat()].concat()
 }
 
-fn header() -> Vec<u8> {
+pub(super) fn header() -> Vec<u8> {
     record(1, &[text(""), text("")].concat())
 }
 
@@ -45,7 +45,7 @@ fn message(channel: u8, content: &[u8]) -> Vec<u8> {
 }
 
 /// A chunk that claims to unpack to a size.
-fn chunk(size: u64, compression: &str, packed: &[u8]) -> Vec<u8> {
+pub(super) fn chunk(size: u64, compression: &str, packed: &[u8]) -> Vec<u8> {
     let mut content = vec![0; 16];
     content.extend(size.to_le_bytes());
     // A checksum of zero is not verified.
@@ -70,7 +70,7 @@ fn zeros(blocks: usize) -> Vec<u8> {
 }
 
 /// Fields of a header of ROS 1, each with its name.
-fn fields(fields: &[(&str, &[u8])]) -> Vec<u8> {
+pub(super) fn fields(fields: &[(&str, &[u8])]) -> Vec<u8> {
     let field = |(name, value): &(&str, &[u8])| {
         let bytes = [name.as_bytes(), b"=", value].concat();
         [&(bytes.len() as u32).to_le_bytes()[..], &bytes].concat()
@@ -79,7 +79,7 @@ fn fields(fields: &[(&str, &[u8])]) -> Vec<u8> {
 }
 
 /// A record of ROS 1 whose data claim a length.
-fn ros1(header: &[(&str, &[u8])], claimed: u32, data: &[u8]) -> Vec<u8> {
+pub(super) fn ros1(header: &[(&str, &[u8])], claimed: u32, data: &[u8]) -> Vec<u8> {
     let header = fields(header);
     [
         &(header.len() as u32).to_le_bytes()[..],
@@ -91,7 +91,7 @@ fn ros1(header: &[(&str, &[u8])], claimed: u32, data: &[u8]) -> Vec<u8> {
 }
 
 /// A bag of ROS 1 with these records, whose header gives the offset of an index.
-fn ros1_bag(index: u64, records: &[Vec<u8>]) -> Vec<u8> {
+pub(super) fn ros1_bag(index: u64, records: &[Vec<u8>]) -> Vec<u8> {
     let header = ros1(&[("op", &[3]), ("index_pos", &index.to_le_bytes())], 0, &[]);
     [&b"#ROSBAG V2.0\n"[..], &header, &records.concat()].concat()
 }
@@ -221,7 +221,8 @@ fn sqlite_cases() -> Vec<(String, Vec<u8>, &'static str)> {
         (
             "a.db3".into(),
             database(&format!(
-                "{topics}CREATE TABLE messages(id, topic_id, data); INSERT INTO messages VALUES(1, 2, x'00');"
+                "{topics}CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id, data); \
+                 INSERT INTO messages VALUES(1, 2, x'00');"
             )),
             "a message has no topic",
         ),

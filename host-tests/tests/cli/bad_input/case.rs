@@ -67,6 +67,12 @@ impl Case {
         self
     }
 
+    /// The case with a further file, which may lie in a folder.
+    pub(crate) fn beside(mut self, file: String, bytes: Vec<u8>) -> Self {
+        self.files.push((file, bytes));
+        self
+    }
+
     /// The case with shell commands that prepare the folder.
     pub(crate) fn prepared(mut self, commands: &str) -> Self {
         self.prepare = commands.to_owned();
@@ -79,10 +85,16 @@ impl Case {
         self
     }
 
-    /// Runs the command, and returns what is wrong with its end.
-    pub(crate) fn run(&self, folder: &Path, needed_kib: u64) -> Result<(), String> {
+    pub(crate) fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Runs the command, and returns what it used, or what is wrong with its end.
+    pub(crate) fn run(&self, folder: &Path, needed_kib: u64) -> Result<Usage, String> {
         for (name, bytes) in &self.files {
-            fs::write(folder.join(name), bytes).unwrap();
+            let file = folder.join(name);
+            fs::create_dir_all(file.parent().unwrap()).unwrap();
+            fs::write(file, bytes).unwrap();
         }
         if !self.prepare.is_empty() {
             let mut shell = Command::new("sh");
@@ -98,13 +110,13 @@ impl Case {
         };
         match ended.status {
             None => wrong("still running"),
-            Some(0 | 2) if self.is_ambiguous => Ok(()),
+            Some(0 | 2) if ended.has_controls() => wrong("control characters"),
+            Some(0 | 2) if self.is_ambiguous => Ok(ended.usage),
             status if status != Some(self.status) => wrong("another exit status"),
             _ if !ended.errors.contains(&self.expected) => wrong("another message"),
             _ if self.status == 2 && !is_one_line(&ended.errors) => wrong("not one clear line"),
             _ if self.status == 2 && !self.names_place(&ended.errors) => wrong("no place"),
-            _ if ended.has_controls() => wrong("control characters"),
-            _ => Ok(()),
+            _ => Ok(ended.usage),
         }
     }
 }
@@ -133,9 +145,17 @@ fn is_one_line(errors: &str) -> bool {
         && last.len() < 2000
 }
 
+/// What a command used: the time that passed, and its most memory, which is looked at every few milliseconds.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Usage {
+    pub(crate) seconds: f64,
+    pub(crate) kib: u64,
+}
+
 /// How a command ended.
 #[derive(Debug)]
 struct Ended {
+    usage: Usage,
     status: Option<i32>,
     output: String,
     errors: String,
@@ -143,7 +163,10 @@ struct Ended {
 
 impl Ended {
     fn has_controls(&self) -> bool {
-        let is_control = |c: char| c.is_control() && c != '\n' && c != '\t';
+        let is_control = |c: char| {
+            let is_invisible = matches!(c, '\u{200b}'..='\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+            c.is_control() && c != '\n' && c != '\t' || is_invisible
+        };
         self.output.contains(is_control) || self.errors.contains(is_control)
     }
 }
@@ -179,8 +202,10 @@ fn limited(folder: &Path, arguments: &[&str], input: &[u8], most_kib: u64) -> En
         String::from_utf8_lossy(&text).into_owned()
     });
     let begun = Instant::now();
+    let mut usage = Usage::default();
     let mut status = child.try_wait().unwrap();
     while status.is_none() && begun.elapsed() < LONGEST {
+        usage.kib = usage.kib.max(most_resident_kib(child.id()));
         thread::sleep(Duration::from_millis(2));
         status = child.try_wait().unwrap();
     }
@@ -188,12 +213,24 @@ fn limited(folder: &Path, arguments: &[&str], input: &[u8], most_kib: u64) -> En
         child.kill().unwrap();
         child.wait().unwrap();
     }
+    usage.seconds = begun.elapsed().as_secs_f64();
     sender.join().unwrap();
     Ended {
+        usage,
         status: status.map(|status| status.code().unwrap_or(-1)),
         output: outputs.join().unwrap(),
         errors: errors.join().unwrap(),
     }
+}
+
+/// The most memory that a process had so far; 0 where the system does not tell.
+fn most_resident_kib(process: u32) -> u64 {
+    let status = fs::read_to_string(format!("/proc/{process}/status")).unwrap_or_default();
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+    let number = line.and_then(|line| line.trim().strip_suffix(" kB"));
+    number
+        .and_then(|number| number.trim().parse().ok())
+        .unwrap_or(0)
 }
 
 /// The address space that the program needs for a good log, in KiB.

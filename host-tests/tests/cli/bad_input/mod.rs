@@ -4,6 +4,8 @@
 mod arrays;
 mod bags;
 mod case;
+mod claims;
+mod corpus;
 mod curves;
 mod options;
 mod pipes;
@@ -12,10 +14,18 @@ mod tables;
 mod text;
 mod ulogs;
 
-use case::Case;
-use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+use case::{Case, Usage};
+use std::sync::{
+    Mutex,
+    atomic::{AtomicUsize, Ordering::Relaxed},
+};
 use std::thread;
 use tempfile::TempDir;
+
+/// A good log of three axes.
+pub(crate) fn good_text(rows: usize) -> String {
+    text::good(rows)
+}
 
 /// Two programs run at a time.
 const AT_ONCE: usize = 2;
@@ -26,6 +36,7 @@ fn every_bad_input_ends_with_its_status_and_message_in_little_time_and_memory() 
         text::cases(),
         arrays::cases(),
         bags::cases(),
+        claims::cases(),
         ulogs::cases(),
         curves::cases(),
         stored::cases(),
@@ -37,17 +48,26 @@ fn every_bad_input_ends_with_its_status_and_message_in_little_time_and_memory() 
     .flatten()
     .collect();
     assert!(cases.len() >= 600, "{} cases", cases.len());
+    println!("{} bad inputs", cases.len());
+    run_all(&cases, &mut |_, _| {});
+}
+
+/// Runs every case, shows what it used, and fails if something is wrong with some of them.
+fn run_all(cases: &[Case], show: &mut (dyn FnMut(&Case, Usage) + Send)) {
     let needed_kib = case::needed_kib();
     let next = AtomicUsize::new(0);
+    let show = Mutex::new(show);
     let work = || {
         let mut wrong = Vec::new();
         while let Some(case) = cases.get(next.fetch_add(1, Relaxed)) {
             let folder = TempDir::new().unwrap();
-            wrong.extend(case.run(folder.path(), needed_kib).err());
+            match case.run(folder.path(), needed_kib) {
+                Ok(usage) => show.lock().unwrap()(case, usage),
+                Err(what) => wrong.push(what),
+            }
         }
         wrong
     };
-    println!("{} bad inputs", cases.len());
     let wrong: Vec<String> = thread::scope(|scope| {
         let workers: Vec<_> = (0..AT_ONCE).map(|_| scope.spawn(work)).collect();
         let found = workers.into_iter().map(|worker| worker.join().unwrap());

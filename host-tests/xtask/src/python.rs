@@ -1,7 +1,7 @@
 //! Builds the package for Python, and tests it in a virtual environment of its own.
 
 use crate::{
-    firmware::{cargo, target_directory, workspace},
+    firmware::{cargo, workspace},
     step::step,
 };
 use anyhow::{Context as _, Result, bail};
@@ -34,7 +34,8 @@ pub(crate) fn run(arguments: &[String]) -> Result<()> {
         );
         return Ok(());
     };
-    let environment = target_directory().join("python");
+    let target = target();
+    let environment = target.join("python");
     let of_environment = programs(&environment);
     if !is_able(&of_environment.join("python").to_string_lossy()) {
         step(
@@ -62,7 +63,7 @@ pub(crate) fn run(arguments: &[String]) -> Result<()> {
         println!("skipped: pip cannot install {REQUIREMENTS}, which needs the network: {error:#}");
         return Ok(());
     }
-    let wheels = target_directory().join("wheels");
+    let wheels = target.join("wheels");
     if wheels.exists() {
         // Only the wheel that is built now is to be there.
         fs::remove_dir_all(&wheels).with_context(|| wheels.display().to_string())?;
@@ -74,7 +75,7 @@ pub(crate) fn run(arguments: &[String]) -> Result<()> {
             .arg(workspace().join("src/python/Cargo.toml"))
             .arg("--out")
             .arg(&wheels)
-            .env("CARGO_TARGET_DIR", target_directory()),
+            .env("CARGO_TARGET_DIR", &target),
     )?;
     step(
         "Python: the program to compare with",
@@ -108,8 +109,15 @@ pub(crate) fn run(arguments: &[String]) -> Result<()> {
             .args(["-m", "pytest", "--quiet"])
             .args(arguments)
             .current_dir(workspace().join("src/python"))
-            .env("ALLANITE", target_directory().join("release/allanite")),
+            .env("ALLANITE", target.join("release/allanite")),
     )
+}
+
+/// The target folder, which the wheel shares with the programs of the host.
+fn target() -> PathBuf {
+    let folder =
+        std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| "target".into(), PathBuf::from);
+    workspace().join(folder)
 }
 
 /// The folder of the programs of a virtual environment.

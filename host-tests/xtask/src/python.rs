@@ -20,8 +20,15 @@ const NAMES: [&str; 2] = ["python3", "python"];
 /// What the tests need beside the wheel, with versions.
 const REQUIREMENTS: &str = "src/python/tests/requirements.txt";
 
-/// The parts of the program that the wheel has too, so that both share the build.
-const PARTS: [&str; 3] = ["--no-default-features", "--features", "bags,tables"];
+/// The parts of the program that the wheel has too. With the wheel's package beside it, what both depend on has the same
+/// features, and is built once.
+const PARTS: [&str; 5] = [
+    "--package",
+    "allanite-python",
+    "--no-default-features",
+    "--features",
+    "host-tests/bags,host-tests/tables",
+];
 
 /// Builds the wheel, installs it, and runs its tests. `arguments` go to pytest.
 ///

@@ -1,7 +1,7 @@
 //! Builds the package for Python, and tests it in a virtual environment of its own.
 
 use crate::{
-    firmware::{cargo, target_directory, workspace},
+    firmware::{cargo, workspace},
     step::step,
 };
 use anyhow::{Context as _, Result, bail};
@@ -20,8 +20,15 @@ const NAMES: [&str; 2] = ["python3", "python"];
 /// What the tests need beside the wheel, with versions.
 const REQUIREMENTS: &str = "src/python/tests/requirements.txt";
 
-/// The parts of the program that the wheel has too, so that both share the build.
-const PARTS: [&str; 3] = ["--no-default-features", "--features", "bags,tables"];
+/// The parts of the program that the wheel has too. With the wheel's package beside it, what both depend on has the same
+/// features, and is built once.
+const PARTS: [&str; 5] = [
+    "--package",
+    "allanite-python",
+    "--no-default-features",
+    "--features",
+    "host-tests/bags,host-tests/tables",
+];
 
 /// Builds the wheel, installs it, and runs its tests. `arguments` go to pytest.
 ///
@@ -34,7 +41,8 @@ pub(crate) fn run(arguments: &[String]) -> Result<()> {
         );
         return Ok(());
     };
-    let environment = target_directory().join("python");
+    let target = target();
+    let environment = target.join("python");
     let of_environment = programs(&environment);
     if !is_able(&of_environment.join("python").to_string_lossy()) {
         step(
@@ -62,7 +70,7 @@ pub(crate) fn run(arguments: &[String]) -> Result<()> {
         println!("skipped: pip cannot install {REQUIREMENTS}, which needs the network: {error:#}");
         return Ok(());
     }
-    let wheels = target_directory().join("wheels");
+    let wheels = target.join("wheels");
     if wheels.exists() {
         // Only the wheel that is built now is to be there.
         fs::remove_dir_all(&wheels).with_context(|| wheels.display().to_string())?;
@@ -74,7 +82,7 @@ pub(crate) fn run(arguments: &[String]) -> Result<()> {
             .arg(workspace().join("src/python/Cargo.toml"))
             .arg("--out")
             .arg(&wheels)
-            .env("CARGO_TARGET_DIR", target_directory()),
+            .env("CARGO_TARGET_DIR", &target),
     )?;
     step(
         "Python: the program to compare with",
@@ -108,8 +116,15 @@ pub(crate) fn run(arguments: &[String]) -> Result<()> {
             .args(["-m", "pytest", "--quiet"])
             .args(arguments)
             .current_dir(workspace().join("src/python"))
-            .env("ALLANITE", target_directory().join("release/allanite")),
+            .env("ALLANITE", target.join("release/allanite")),
     )
+}
+
+/// The target folder, which the wheel shares with the programs of the host.
+fn target() -> PathBuf {
+    let folder =
+        std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| "target".into(), PathBuf::from);
+    workspace().join(folder)
 }
 
 /// The folder of the programs of a virtual environment.

@@ -1,6 +1,6 @@
 //! A model beside a record, in memory.
 
-use super::{options::parse, own::Own, record::json};
+use super::{document::json, options::parse, own::Own};
 use crate::{
     command::{
         compare::{check_visible, compared::Compared, json::document, model::ModelArguments},

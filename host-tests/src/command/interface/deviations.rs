@@ -1,6 +1,6 @@
 //! Allan deviations of arrays, and nothing else.
 
-use super::{options::parse, record::json};
+use super::{document::json, options::parse};
 use crate::{
     failure::Failure,
     log::{self, Arrays},

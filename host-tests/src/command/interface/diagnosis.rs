@@ -2,9 +2,9 @@
 
 use super::{
     comparison::Comparison,
+    document::{json, no_axis, text},
     options::parse,
     own::Own,
-    record::{json, no_axis, text},
 };
 use crate::{
     command::{

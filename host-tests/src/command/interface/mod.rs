@@ -6,6 +6,7 @@
 mod comparison;
 mod deviations;
 mod diagnosis;
+mod document;
 mod options;
 mod own;
 mod record;

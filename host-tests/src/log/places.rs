@@ -56,7 +56,12 @@ impl Places {
         if !counted.told || number < FEWEST {
             return None;
         }
-        let mean = rows.iter().filter(|&&repeats| repeats).count() as f64 / number as f64;
+        let repeats = rows.iter().filter(|&&repeats| repeats).count();
+        // Rows that all repeat, or of which none does, have no line, and a transform would take a hundred megabytes.
+        if repeats == 0 || repeats == number {
+            return None;
+        }
+        let mean = repeats as f64 / number as f64;
         let length = 2 * number.next_power_of_two();
         let centred = rows
             .iter()

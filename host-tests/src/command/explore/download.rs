@@ -2,7 +2,10 @@
 
 use super::{fitted::Fitted, question::Question, record::SessionRecord};
 use crate::{
-    command::{diagnose::words::shown_p, output::words},
+    command::{
+        diagnose::words::shown_p,
+        output::{cell::cell, words},
+    },
     confidence::relative_errors,
     log::{BINS, OCTAVES},
     plot::{Drawing, Figure, Frame, relative_error, svg},
@@ -120,33 +123,11 @@ pub(super) fn table(fitted: &Fitted, question: &Question) -> Result<Vec<u8>, csv
             let root = |sign: f64| (measured * (1.0 + sign * error)).max(0.0).sqrt();
             let numbers = [x, root(0.0), root(-1.0), root(1.0), model.sqrt(), z];
             let numbers = numbers.map(|number| number.to_string());
-            let names = [as_text(record.name()), figure.to_owned()];
+            let names = [cell(&record.name()), figure.to_owned()];
             table.write_record(names.iter().chain(&numbers))?;
         }
     }
     table
         .into_inner()
         .map_err(|error| error.into_error().into())
-}
-
-/// A name in a table. A spreadsheet takes text that begins with one of these signs for a formula, which an apostrophe
-/// prevents.
-fn as_text(name: String) -> String {
-    match name.trim_start().starts_with(['=', '+', '-', '@']) || name.starts_with(['\t', '\r']) {
-        true => format!("'{name}"),
-        false => name,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn no_name_is_a_formula() {
-        assert_eq!(as_text("gx of a.csv".into()), "gx of a.csv");
-        for name in ["=1+1", "+x", "-x", "@x", " =x", "\tx"] {
-            assert_eq!(as_text(name.into()), format!("'{name}"));
-        }
-    }
 }

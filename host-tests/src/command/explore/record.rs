@@ -15,7 +15,7 @@ use crate::{
         output::words,
     },
     curve_file::AxisCurve,
-    failure::Failure,
+    failure::{Failure, one_line},
     log::{BINS, Evidence, OCTAVES, Spectrogram},
     plot::CourseFigure,
 };
@@ -84,7 +84,7 @@ fn explored(
     };
     let listed = ListedRecord {
         name: record.name(),
-        input: record.input.clone(),
+        input: one_line(&record.input),
         axis: record.axis.axis.clone(),
         size: record.size(),
         unit: record.axis.unit.to_string(),

@@ -9,6 +9,7 @@ use crate::{
         },
         output::{glossary, shell::quoted, words},
     },
+    failure::one_line,
     plot,
 };
 use allanite::{
@@ -56,7 +57,7 @@ pub(super) fn page(content: &Content) -> String {
         .input
         .file_name()
         .unwrap_or(content.input.as_os_str());
-    let name = name.to_string_lossy();
+    let name = one_line(&name.to_string_lossy());
     // Without `<`, no text in the data can end the script element.
     let json = content.json.replace('<', "\\u003c");
     let glossary = serde_json::to_string(&glossary::words()).unwrap_or_default();
@@ -198,14 +199,14 @@ fn settings(content: &Content) -> Markup {
     let default = Options::default();
     let options = content.diagnosed.first().map_or(default, |one| one.options);
     let arguments = std::env::args_os().skip(1);
-    let arguments = arguments.map(|argument| argument.to_string_lossy().into_owned());
+    let arguments = arguments.map(|argument| one_line(&argument.to_string_lossy()));
     let words = std::iter::once("allanite".to_owned()).chain(arguments);
     let command = words
         .map(|word| quoted(&word))
         .collect::<Vec<_>>()
         .join(" ");
     let settings = [
-        ("input", content.input.to_string_lossy().into_owned()),
+        ("input", one_line(&content.input.to_string_lossy())),
         ("command", command),
         ("version", format!("allanite {}", env!("CARGO_PKG_VERSION"))),
         (

@@ -42,6 +42,9 @@ pub fn check(bytes: &[u8]) {
     }
 }
 
+/// What numbers, texts and lists of JSON are made of.
+const SIGNS: &[u8] = b"0123456789-.eE,:[]{}nulltrue\"";
+
 /// The text of a session, in which pairs of a place and a byte overwrite digits and signs.
 fn damaged(text: &str, bytes: &[u8]) -> Vec<u8> {
     let mut damaged = text.as_bytes().to_vec();
@@ -50,7 +53,7 @@ fn damaged(text: &str, bytes: &[u8]) -> Vec<u8> {
         let at = place % damaged.len();
         damaged[at] = match change[3] {
             byte @ 128.. => byte & 127,
-            byte => b"0123456789-.eE,:[]{}nulltrue\""[usize::from(byte) % 30],
+            byte => SIGNS[usize::from(byte) % SIGNS.len()],
         };
     }
     damaged

@@ -339,7 +339,7 @@ fn names_are_shown_as_text_and_never_run_as_markup() {
     assert_eq!(embedded(&page)["diagnosis"], diagnosis);
     let mut browser = opened(folder.path());
     assert_eq!(browser.value("typeof window.taken"), "undefined");
-    assert_eq!(browser.value("document.scripts.length"), 14);
+    assert_eq!(browser.value("document.scripts.length"), 16);
     assert_eq!(browser.value("document.images.length"), 0);
     assert_eq!(
         browser.value("document.querySelector('.axis h2').textContent"),

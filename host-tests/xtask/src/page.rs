@@ -133,7 +133,7 @@ fn read(path: &Path) -> Result<String> {
             .any(|begin| line.starts_with(begin))
     };
     let kept: Vec<&str> = lines
-        .filter(|line| !line.is_empty() && !(is_comment(line) && !line.starts_with("* {")))
+        .filter(|line| !line.is_empty() && !is_comment(line))
         .collect();
     Ok(kept.join("\n"))
 }

@@ -1,8 +1,8 @@
 //! `ask`: the questions of the page of `explore`, which runs this program for each of them.
 
-use super::session::Session;
+use super::{question::What, session::Session};
 use crate::failure::{Failure, Place};
-use clap::{Args, ValueEnum};
+use clap::Args;
 use std::{
     io::{Read, Write},
     path::PathBuf,
@@ -20,17 +20,6 @@ pub(in crate::command) struct Arguments {
     question: String,
     /// What `explore --session` printed
     session: PathBuf,
-}
-
-/// What can be asked for about a model.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum What {
-    /// The fit with its figures, in JSON.
-    Fit,
-    /// The figures, as SVG.
-    Drawing,
-    /// The points of the figures, as CSV.
-    Table,
 }
 
 /// Runs the command.

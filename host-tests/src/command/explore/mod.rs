@@ -18,7 +18,7 @@ mod taken_out;
 mod thought;
 
 pub(super) use arguments::Arguments;
-pub use ask::What;
+pub use question::What;
 pub use session::Session;
 
 use crate::failure::Failure;

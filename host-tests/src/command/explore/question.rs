@@ -5,9 +5,21 @@ use crate::{
     failure::Failure,
 };
 use allanite::{Model, Term};
+use clap::ValueEnum;
 use serde::Deserialize;
 
 pub(super) use crate::command::effect_argument::written as with;
+
+/// What can be asked for about a model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum What {
+    /// The fit with its figures, in JSON.
+    Fit,
+    /// The figures, as SVG.
+    Drawing,
+    /// The points of the figures, as CSV.
+    Table,
+}
 
 /// A model and the records beside which it is to be seen.
 #[derive(Debug, Deserialize)]

@@ -3,11 +3,10 @@
 use super::{
     answer::answer,
     arguments::Arguments,
-    ask::What,
     catalogue::{Listed, catalogue},
     download,
     fitted::Fitted,
-    question::Question,
+    question::{Question, What},
     record::{self, ListedRecord, SessionRecord},
     shell,
 };

@@ -6,7 +6,9 @@ use std::{
     io::{self, BufWriter, ErrorKind, Write},
     path::{Path, PathBuf},
 };
-use tempfile::{NamedTempFile, TempPath};
+#[cfg(feature = "bags")]
+use tempfile::NamedTempFile;
+use tempfile::TempPath;
 
 /// The text of a log may be this long, and this many times the size of its file longer. Packed columns of noise become
 /// some ten times as long.
@@ -28,6 +30,7 @@ pub(super) struct Text {
 
 impl Text {
     /// An empty text for a log, in a temporary file.
+    #[cfg(feature = "bags")]
     pub(super) fn new(path: &Path, size: u64) -> Result<(Self, TempPath), Failure> {
         let file = NamedTempFile::new().map_err(|error| Place::file(path).io(&error))?;
         let (file, temporary) = file.into_parts();

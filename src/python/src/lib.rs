@@ -2,7 +2,7 @@
 //! memory, and their documents, from which the Python part builds its types.
 //!
 //! Everything that reads or computes does so without the interpreter's lock, so that other threads of Python go on. Python
-//! is asked for signals in between: see [`watched`].
+//! is asked for signals in between: see `watched`.
 
 mod accumulator;
 mod arrays;

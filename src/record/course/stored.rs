@@ -61,7 +61,7 @@ impl<const COVARIATES: usize> Course<COVARIATES> {
     }
 }
 
-/// The bytes of [`write`](Course::write), for a program that keeps a course with what it has computed from it.
+/// The bytes in which a course is stored, for a program that keeps it with what it has computed from it.
 impl serde::Serialize for Course {
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut buffer = [0; Self::LONGEST_STORED];

@@ -25,8 +25,8 @@ function explain(word) {
   const [at, own] = [word.getBoundingClientRect(), meaningBox.getBoundingClientRect()];
   const left = Math.max(8, Math.min(at.left, document.documentElement.clientWidth - own.width - 8));
   const below = at.bottom + 6 + own.height < window.innerHeight;
-  meaningBox.style.left = `${left + window.scrollX}px`;
-  meaningBox.style.top = `${(below ? at.bottom + 6 : Math.max(4, at.top - own.height - 6)) + window.scrollY}px`;
+  meaningBox.style.left = `${left}px`;
+  meaningBox.style.top = `${(below ? at.bottom + 6 : Math.max(4, at.top - own.height - 6))}px`;
 }
 
 const glossOf = (event) => (event.target instanceof Element ? event.target.closest(".gloss") : null);
@@ -41,6 +41,10 @@ for (const name of ["mouseout", "focusout"]) {
   document.addEventListener(name, (event) => {
     if (glossOf(event)) meaningBox.hidden = true;
   });
+}
+// It stands beside its word, which moves then.
+for (const name of ["scroll", "resize"]) {
+  window.addEventListener(name, () => { meaningBox.hidden = true; }, { passive: true });
 }
 document.addEventListener("keydown", (event) => {
   if (event.key === "Escape") meaningBox.hidden = true;

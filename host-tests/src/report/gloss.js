@@ -43,9 +43,7 @@ for (const name of ["mouseout", "focusout"]) {
   });
 }
 // It stands beside its word, which moves then.
-for (const name of ["scroll", "resize"]) {
-  window.addEventListener(name, () => { meaningBox.hidden = true; }, { passive: true });
-}
+window.addEventListener("resize", () => { meaningBox.hidden = true; });
 document.addEventListener("keydown", (event) => {
   if (event.key === "Escape") meaningBox.hidden = true;
 });

@@ -127,10 +127,10 @@ fn packed(program: &Path) -> Result<Vec<u8>> {
 fn read(path: &Path) -> Result<String> {
     let text = fs::read_to_string(path).with_context(|| path.display().to_string())?;
     let lines = text.lines().map(str::trim);
+    // The rule of CSS for all elements begins as a comment goes on.
     let is_comment = |line: &str| {
-        ["//", "/*", "*"]
-            .iter()
-            .any(|begin| line.starts_with(begin))
+        let begins = |begin: &&str| line.starts_with(*begin);
+        ["//", "/*", "*"].iter().any(begins) && !line.starts_with("* {")
     };
     let kept: Vec<&str> = lines
         .filter(|line| !line.is_empty() && !is_comment(line))

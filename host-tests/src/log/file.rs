@@ -44,8 +44,7 @@ pub fn read_with_evidence(
         moments: true,
         spectrogram: false,
     };
-    let (log, _) = read_parts(path, options, None, Some(watch), progress)?;
-    Ok(log)
+    read_parts(path, options, None, Some(watch), progress).map(|(log, _)| log)
 }
 
 /// As [`read_with_evidence`], together with the spectrogram, which only a page shows.
@@ -63,8 +62,7 @@ pub fn read_for_page(
         moments: true,
         spectrogram: true,
     };
-    let (log, _) = read_parts(path, options, None, Some(watch), progress)?;
-    Ok(log)
+    read_parts(path, options, None, Some(watch), progress).map(|(log, _)| log)
 }
 
 /// As [`read_with_evidence`], without the kurtosis, which takes time and only a diagnosis needs.
@@ -82,8 +80,7 @@ pub fn read_for_fit(
         moments: false,
         spectrogram: false,
     };
-    let (log, _) = read_parts(path, options, None, Some(watch), progress)?;
-    Ok(log)
+    read_parts(path, options, None, Some(watch), progress).map(|(log, _)| log)
 }
 
 /// Reads a log as two: the last `share` of its rows is kept apart as the second. The file is read

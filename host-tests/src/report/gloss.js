@@ -30,7 +30,8 @@ function explain(word) {
 }
 
 const glossOf = (event) => (event.target instanceof Element ? event.target.closest(".gloss") : null);
-for (const name of ["mouseover", "focusin", "click"]) {
+// A finger that rests too long on a word makes no click; it is lifted all the same.
+for (const name of ["mouseover", "focusin", "pointerup", "click"]) {
   document.addEventListener(name, (event) => {
     const word = glossOf(event);
     if (word) explain(word);

@@ -222,12 +222,13 @@ fn a_page_without_the_log_says_the_command_that_cuts_it() {
     assert_eq!(browser.value(hidden), false);
     browser.press("Escape");
     assert_eq!(browser.value(hidden), true);
-    let place = middle(browser.sight(word));
-    browser.touch(&[&[place]]);
+    // A machine that is busy may still scroll when the finger comes, so that it taps again, as a reader does.
     let begin = Instant::now();
     while browser.value(hidden) != false {
-        assert!(begin.elapsed() < Duration::from_secs(10), "not explained");
-        thread::sleep(Duration::from_millis(10));
+        assert!(begin.elapsed() < Duration::from_secs(30), "not explained");
+        let place = middle(browser.sight(word));
+        browser.touch(&[&[place]]);
+        thread::sleep(Duration::from_millis(200));
     }
     assert!(browser.complaints.is_empty(), "{:?}", browser.complaints);
 }

@@ -14,6 +14,7 @@ pub use levels::{SpectrumLevel, SpectrumLevels};
 use crate::{
     failure::{Failure, Place, brief, one_line, quoted},
     log::{self, BINS, OCTAVES},
+    pieces::{self, Pieces},
     regular_file,
     unit::Unit,
 };
@@ -25,8 +26,8 @@ use std::{io::Read, ops::Range, path::Path};
 pub const FORMAT: &str = "allanite-curve";
 
 /// The version of the format that is written. Versions from 1 on are read; version 1 has no spectrum, version 2 no short
-/// octaves, and version 3 neither a course nor levels of the spectrum with fewer than 16 segments.
-pub const VERSION: u32 = 4;
+/// octaves, version 3 neither a course nor levels of the spectrum with fewer than 16 segments, and version 4 no pieces.
+pub const VERSION: u32 = 5;
 
 /// Largest size of a curve file, in bytes. A curve takes a few kilobytes for each axis. Chosen by hand.
 const LARGEST: u64 = 1 << 24;
@@ -37,8 +38,8 @@ const MOST_AXES: usize = log::MOST_AXES;
 /// Longest name of an axis, in bytes.
 const LONGEST_NAME: usize = 1 << 12;
 
-/// Largest number of samples: a thousand years at 33 kHz.
-const MOST_SAMPLES: u64 = 1 << 50;
+/// Largest number of samples.
+const MOST_SAMPLES: u64 = pieces::MOST_SAMPLES;
 
 /// The curves of a log's axes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -64,6 +65,9 @@ pub struct AxisCurve {
     pub rate_per_count: f64,
     /// Number of samples of the record.
     pub samples: u64,
+    /// The number of the first sample in the record that this is a part of.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub first_sample: u64,
     /// Number of gaps, each of which ends a contiguous stretch of the record.
     pub gaps: u64,
     /// The gaps that were filled, and the samples that were lost in them.
@@ -86,6 +90,14 @@ pub struct AxisCurve {
     /// The course. Files before version 4, records that are too short and merged records have none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub course: Option<CourseDensities>,
+    /// What rejoins this part of a record with its neighbours. Files before version 5, and records that are measured as a whole,
+    /// have none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pieces: Option<Pieces>,
+}
+
+fn is_zero(number: &u64) -> bool {
+    *number == 0
 }
 
 /// One octave of a curve.
@@ -275,6 +287,7 @@ impl AxisCurve {
             unit,
             rate_per_count: axis.rate_per_count,
             samples: axis.accumulator.samples(),
+            first_sample: 0,
             gaps: axis.accumulator.gaps(),
             bridged: *axis.accumulator.bridged(),
             source: None,
@@ -284,7 +297,49 @@ impl AxisCurve {
             spectrum: Some(SpectrumLevels::of(&spectrum))
                 .filter(|spectrum| !spectrum.levels.is_empty()),
             course: course.as_ref().map(CourseDensities::of),
+            pieces: None,
         })
+    }
+
+    /// The curve of an axis with these sums, of as many octaves as have differences, shortest first. The sensor has a rate in
+    /// samples per second, a unit and a scale in rate units per count.
+    pub(crate) fn of_sums(
+        axis: &str,
+        (samples, bridged): (u64, &Bridged),
+        (rate_hz, unit, rate_per_count): (f64, Unit, f64),
+        sums: &[ShortOctave],
+    ) -> Self {
+        let least = Curve::<OCTAVES>::MIN_DIFFERENCES;
+        let (long, short): (Vec<ShortOctave>, Vec<ShortOctave>) =
+            sums.iter().partition(|octave| octave.differences >= least);
+        let raw = long.iter();
+        let raw = raw.map(|octave| (octave.m, octave.differences, octave.sum));
+        let variances = variances(raw, rate_per_count, bridged, samples);
+        let octaves = long.iter().zip(variances);
+        let octaves = octaves.map(|(octave, variance)| Octave {
+            m: octave.m,
+            tau_s: f64::from(octave.m) / rate_hz,
+            differences: octave.differences,
+            sum: octave.sum,
+            variance,
+        });
+        Self {
+            axis: axis.into(),
+            rate_hz,
+            unit,
+            rate_per_count,
+            samples,
+            first_sample: 0,
+            gaps: 0,
+            bridged: *bridged,
+            source: None,
+            licence: None,
+            octaves: octaves.collect(),
+            short,
+            spectrum: None,
+            course: None,
+            pieces: None,
+        }
     }
 
     /// The spectrum as the library's type; without bins if the file has none.
@@ -334,7 +389,7 @@ impl AxisCurve {
             return Err(format!("rate_hz {} is impossible", brief(self.rate_hz)));
         }
         positive("rate_per_count", self.rate_per_count)?;
-        if self.samples > MOST_SAMPLES {
+        if self.samples > MOST_SAMPLES || self.first_sample > MOST_SAMPLES {
             return Err(format!("{} samples are impossible", self.samples));
         }
         if self.gaps > self.samples {
@@ -381,6 +436,9 @@ impl AxisCurve {
         if let Some(spectrum) = &self.spectrum {
             spectrum.check(self.samples, self.rate_hz, variance)?;
         }
+        if let Some(pieces) = &self.pieces {
+            pieces.check(self)?;
+        }
         if let Some(course) = &self.course {
             // Missing samples count as time.
             let samples = (self.gaps == 0).then_some(self.samples);
@@ -414,7 +472,8 @@ impl AxisCurve {
         if !m.is_power_of_two() || m.ilog2() >= OCTAVES as u32 {
             return Err("the averaging factor is not a power of two up to 2^29".into());
         }
-        let possible = possible_differences(self.samples.saturating_add(self.bridged.lost()), m);
+        let samples = self.samples.saturating_add(self.bridged.lost());
+        let possible = possible_differences(self.first_sample, samples, m);
         let right = match self.gaps {
             0 if self.bridged.is_empty() => differences == possible,
             _ => differences <= possible,
@@ -460,14 +519,16 @@ fn variances(
     )
 }
 
-/// Number of quarter-overlapping differences in a record without gaps.
-fn possible_differences(samples: u64, m: u32) -> u64 {
-    let (blocks, first) = match m {
-        1 => (samples, 1),
-        2 => (samples, 3),
-        _ => (samples / u64::from(m / 4), 7),
+/// Number of quarter-overlapping differences of the samples from this one on, without gaps.
+fn possible_differences(first_sample: u64, samples: u64, m: u32) -> u64 {
+    let (block, last) = match m {
+        1 => (1, 1),
+        2 => (1, 3),
+        _ => (u64::from(m / 4), 7),
     };
-    blocks.saturating_sub(first)
+    let end = first_sample.saturating_add(samples) / block;
+    let blocks = end.saturating_sub(first_sample.div_ceil(block));
+    blocks.saturating_sub(last)
 }
 
 fn close(value: f64, expected: f64) -> bool {

@@ -11,6 +11,7 @@ pub mod failure;
 pub mod log;
 pub mod lot;
 pub mod overbound;
+pub mod pieces;
 pub mod plot;
 pub mod program;
 pub mod quantile;

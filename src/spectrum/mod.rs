@@ -23,6 +23,7 @@ mod covariance;
 mod density;
 mod expected;
 mod fine;
+mod lanes;
 mod level;
 mod line;
 mod lobe;
@@ -40,6 +41,7 @@ pub use accumulator::SpectrumAccumulator;
 pub use covariance::{BAND, covariance_rows, relative_covariance};
 pub use density::{Bin, Spectrum};
 pub use expected::expected_densities;
+pub use lanes::segment_powers;
 pub use part::{Spectral, SpectrumReading};
 
 /// The one-sided density of white noise with a coefficient of one.

@@ -1,71 +1,9 @@
 //! Several segments that are transformed at once.
-//!
-//! A processor of 64 bits usually computes with four numbers of single precision at once. The steps of one transform
-//! are hard to arrange that way, but those of several transforms side by side are not. Every segment goes through the
-//! same operations in the same order as alone, so that the sums are the same to the bit.
 
 use super::{
+    lanes::{LANES, segment_powers},
     level::Level,
-    transform::{Number, Segment},
-    window::bins,
 };
-use core::{
-    array::from_fn,
-    ops::{Add, Mul, Neg, Sub},
-};
-
-/// The number of segments that are transformed at once.
-const LANES: usize = 4;
-
-/// The same place of several segments.
-#[derive(Clone, Copy)]
-#[repr(align(16))]
-struct Lanes([f32; LANES]);
-
-impl Add for Lanes {
-    type Output = Self;
-
-    #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        Self(from_fn(|i| self.0[i] + other.0[i]))
-    }
-}
-
-impl Sub for Lanes {
-    type Output = Self;
-
-    #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        Self(from_fn(|i| self.0[i] - other.0[i]))
-    }
-}
-
-impl Mul<f32> for Lanes {
-    type Output = Self;
-
-    #[inline(always)]
-    fn mul(self, factor: f32) -> Self {
-        Self(self.0.map(|number| number * factor))
-    }
-}
-
-impl Neg for Lanes {
-    type Output = Self;
-
-    #[inline(always)]
-    fn neg(self) -> Self {
-        Self(self.0.map(f32::neg))
-    }
-}
-
-impl Number for Lanes {
-    const ZERO: Self = Self([0.0; LANES]);
-
-    #[inline(always)]
-    fn squared(self) -> Self {
-        Self(self.0.map(|number| number * number))
-    }
-}
 
 /// Segments of any level that wait to be transformed together, in the order in which they were completed.
 pub(super) struct Several<const P: usize> {
@@ -99,20 +37,8 @@ impl<const P: usize> Several<P> {
     }
 
     /// Transforms as many segments as there are lanes.
-    #[inline(never)]
     fn transform(&mut self, levels: &mut [Level<P>]) {
-        let values = &self.values;
-        let segment = Segment::<P, Lanes>::of_blocks(|j| Lanes(from_fn(|i| values[i][j % P])));
-        let mut powers = [Lanes::ZERO; P];
-        segment.for_each_power(powers.iter_mut().take(bins(P)), |power, place| {
-            *place = power;
-        });
-        // The waiting values are not needed any more.
-        for (j, power) in powers.iter().take(bins(P)).enumerate() {
-            for (values, power) in self.values.iter_mut().zip(power.0) {
-                values[j % P] = power;
-            }
-        }
+        segment_powers(&mut self.values);
         for (powers, &level) in self.values.iter().zip(&self.levels) {
             if let Some(level) = levels.get_mut(level) {
                 level.add_powers(powers);

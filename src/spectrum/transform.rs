@@ -75,7 +75,6 @@ impl<const P: usize, T: Number> Segment<P, T> {
     };
 
     /// The segment of which `block` tells the value of each block.
-    #[cfg(target_pointer_width = "64")]
     #[inline]
     pub(super) fn of_blocks(mut block: impl FnMut(usize) -> T) -> Self {
         Self {

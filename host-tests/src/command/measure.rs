@@ -33,6 +33,10 @@ pub(super) struct Arguments {
     output: PathBuf,
     #[command(flatten)]
     about_log: LogArguments,
+    /// The log is a part of a longer record, and begins with this sample of it, counted from 0: merge rejoins parts that
+    /// touch, and loses nothing between them
+    #[arg(long, value_name = "FIRST_SAMPLE")]
+    part: Option<u64>,
     /// Where the record comes from; the curve file keeps this text
     #[arg(long, value_name = "TEXT")]
     source: Option<String>,
@@ -46,6 +50,12 @@ pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), 
     if !arguments.output.is_dir() && arguments.logs.len() < 2 {
         check_name(&arguments.output)?;
     }
+    if arguments.part.is_some() && arguments.logs.len() > 1 {
+        return Err(Failure::option(
+            "--part tells where one log begins, and there are several",
+            "measure the parts one by one",
+        ));
+    }
     let places = places(&arguments.logs, &arguments.output, "json", "measure")?;
     let several = places.len() > 1;
     let work = |log: &Path| {
@@ -53,7 +63,10 @@ pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), 
         // The file comes first, so that an output that cannot be written is refused before the
         // measurement.
         let mut file = OutputFile::create(place, arguments.logs.iter().map(PathBuf::as_path))?;
-        let mut curves = measured(log, &arguments.about_log)?;
+        let mut curves = match arguments.part {
+            Some(first) => record::measure_part(log, &arguments.about_log, first)?,
+            None => measured(log, &arguments.about_log)?,
+        };
         for curve in &mut curves {
             curve.source.clone_from(&arguments.source);
             curve.licence.clone_from(&arguments.licence);

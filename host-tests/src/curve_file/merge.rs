@@ -1,18 +1,15 @@
 //! Curves of parts of a record, merged as if a gap lay between the parts.
 
-use super::{AxisCurve, Octave, ShortOctave, SpectrumLevel, SpectrumLevels, variances};
-use crate::log::OCTAVES;
-use allanite::{
-    Curve,
-    octave::{Bridged, OctaveSum},
-};
+use super::{AxisCurve, ShortOctave, SpectrumLevel, SpectrumLevels};
+use allanite::octave::{Bridged, OctaveSum};
 use std::collections::BTreeMap;
 
 /// Differences and the sum of their squares, by averaging factor.
 type Sums = BTreeMap<u32, (u64, u128)>;
 
 impl AxisCurve {
-    /// The curve of all these parts of the record of one axis. The sums are integers, so that they are those of one
+    /// The curve of all these parts of the record of one axis. Parts that all have [pieces](AxisCurve::pieces) become the record
+    /// that they are parts of, and lose nothing between neighbours. Others are merged as if a gap lay between them. The sums are integers, so that they are those of one
     /// record with gaps between its parts, to the bit, in whatever order and in whatever groups the parts are merged.
     /// The densities are weighted by their segments, in the order of the parts' numbers, so that the order of the
     /// arguments changes no bit of them; merging in groups may change the last one.
@@ -25,6 +22,9 @@ impl AxisCurve {
         };
         for (i, part) in parts.iter().enumerate() {
             first.agrees_with(part).map_err(|what| (i, what))?;
+        }
+        if parts.iter().all(|part| part.pieces.is_some()) {
+            return rejoined(parts);
         }
         // A sum in a finer unit has larger numbers. A quantum is a power of two, so that the ratio is one too.
         let finest = parts.iter().map(|part| part.rate_per_count);
@@ -57,46 +57,26 @@ impl AxisCurve {
             samples = samples.saturating_add(part.samples);
             gaps = gaps.saturating_add(part.gaps);
         }
-        let is_long = |differences: u64| differences >= Curve::<OCTAVES>::MIN_DIFFERENCES;
-        let long = sums.iter().filter(|(_, (count, _))| is_long(*count));
-        let short = sums.iter().filter(|(_, (count, _))| !is_long(*count));
-        let raw = long
-            .clone()
-            .map(|(&m, &(differences, sum))| (m, differences, sum));
-        let variances = variances(raw, finest, &bridged, samples);
+        let sums: Vec<ShortOctave> = sums
+            .into_iter()
+            .map(|(m, (differences, sum))| ShortOctave {
+                m,
+                differences,
+                sum,
+            })
+            .collect();
+        let sensor = (first.rate_hz, first.unit, finest);
         Ok(Self {
-            axis: first.axis.clone(),
-            rate_hz: first.rate_hz,
-            unit: first.unit,
-            rate_per_count: finest,
-            samples,
             gaps,
-            bridged,
             source: joined(parts.iter().map(|part| &part.source)),
             licence: joined(parts.iter().map(|part| &part.licence)),
-            octaves: long
-                .zip(variances)
-                .map(|((&m, &(differences, sum)), variance)| Octave {
-                    m,
-                    tau_s: f64::from(m) / first.rate_hz,
-                    differences,
-                    sum,
-                    variance,
-                })
-                .collect(),
-            short: short
-                .map(|(&m, &(differences, sum))| ShortOctave {
-                    m,
-                    differences,
-                    sum,
-                })
-                .collect(),
             spectrum: spectrum(parts),
             course: match parts {
                 [only] => only.course.clone(),
                 // The time between two parts is not known.
                 _ => None,
             },
+            ..Self::of_sums(&first.axis, (samples, &bridged), sensor, &sums)
         })
     }
 
@@ -142,6 +122,24 @@ impl AxisCurve {
             sum: octave.sum.checked_mul((ratio * ratio) as u128)?.into(),
         })
     }
+}
+
+/// The curve of parts that know where they lie in one record.
+fn rejoined(parts: &[AxisCurve]) -> Result<AxisCurve, (usize, String)> {
+    let numbered = parts.iter().enumerate();
+    let mut pieces = numbered.filter_map(|(i, part)| Some((i, part.pieces.clone()?)));
+    let Some(((_, mut all), first)) = pieces.next().zip(parts.first()) else {
+        return Err((0, "there is nothing to merge".into()));
+    };
+    for (i, part) in pieces {
+        all.merge(part).map_err(|failure| (i, failure.found()))?;
+    }
+    let curve = all.part(&first.axis, first.unit);
+    Ok(AxisCurve {
+        source: joined(parts.iter().map(|part| &part.source)),
+        licence: joined(parts.iter().map(|part| &part.licence)),
+        ..curve.map_err(|failure| (0, failure.found()))?
+    })
 }
 
 /// The different texts, in alphabetical order.

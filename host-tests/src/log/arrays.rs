@@ -114,6 +114,7 @@ pub fn read_arrays(
         covariates,
         moments: true,
         spectrogram: false,
+        first_sample: None,
     };
     if options.topic.is_some() {
         return Err(Place::file(&arrays.path).failure("arrays have no topics", "omit --topic"));

@@ -99,6 +99,7 @@ impl Recorded {
             means: None,
             disturbance: None,
             spectrogram: None,
+            pieces: None,
         })
     }
 

@@ -5,7 +5,7 @@ use super::converted::Converted;
 #[cfg(feature = "tables")]
 use super::tables;
 use super::{
-    Axis, Covariates, Log, Options, csv, npy, parts,
+    Axis, Covariates, Log, Options, csv, npy, part, parts,
     reading::{Watched, read_table},
     source::Format,
     ulog,
@@ -43,6 +43,7 @@ pub fn read_with_evidence(
         covariates,
         moments: true,
         spectrogram: false,
+        first_sample: None,
     };
     read_parts(path, options, None, Some(watch), progress).map(|(log, _)| log)
 }
@@ -61,6 +62,31 @@ pub fn read_for_page(
         covariates,
         moments: true,
         spectrogram: true,
+        first_sample: None,
+    };
+    read_parts(path, options, None, Some(watch), progress).map(|(log, _)| log)
+}
+
+/// As [`read_for_fit`], of a log that is a part of a longer record and begins with its sample `first_sample`, together with
+/// what rejoins it with the parts beside it.
+///
+/// # Errors
+/// The errors are those of [`read_for_fit`]. A log whose samples have no known numbers in the record is refused, and so is
+/// one whose values are no whole numbers.
+pub fn read_part(
+    path: &Path,
+    options: &Options,
+    first_sample: u64,
+    progress: &ProgressBar,
+) -> Result<Log, Failure> {
+    if !options.cuts.is_empty() {
+        return Err(part::refused(path, "--from, --to and --drop cut it"));
+    }
+    let watch = Watched {
+        covariates: &Covariates::Chosen(Vec::new()),
+        moments: false,
+        spectrogram: false,
+        first_sample: Some(first_sample),
     };
     read_parts(path, options, None, Some(watch), progress).map(|(log, _)| log)
 }
@@ -79,6 +105,7 @@ pub fn read_for_fit(
         covariates,
         moments: false,
         spectrogram: false,
+        first_sample: None,
     };
     read_parts(path, options, None, Some(watch), progress).map(|(log, _)| log)
 }

@@ -80,7 +80,10 @@ impl Beside {
             return Self(Vec::new());
         };
         let axes = 0..plan.axes;
-        Self(axes.map(|_| OwnSums::new(watch.spectrogram)).collect())
+        Self(
+            axes.map(|_| OwnSums::new(watch.spectrogram, watch.first_sample))
+                .collect(),
+        )
     }
 
     /// Takes what the accumulators pass on, and gives the batch back.
@@ -234,7 +237,10 @@ impl Batches {
             AxisState::InTwo { first, rest } => Sums::InTwo { first, rest },
             AxisState::Watched(axis) => {
                 // There is one for every watched axis.
-                Sums::Watched(axis, beside.next().unwrap_or_else(|| OwnSums::new(false)))
+                Sums::Watched(
+                    axis,
+                    beside.next().unwrap_or_else(|| OwnSums::new(false, None)),
+                )
             }
         });
         Totals {

@@ -128,6 +128,7 @@ mod npy_block;
 pub mod npy_header;
 mod octaves;
 mod pace;
+mod part;
 mod part_names;
 mod parts;
 mod places;
@@ -157,6 +158,7 @@ mod worker;
 
 use crate::{
     dependence::block_means::BlockMeans,
+    pieces::Pieces,
     unit::{Sensor, Unit},
 };
 use allanite::{
@@ -171,7 +173,7 @@ pub use arrays::{Arrays, Column, Fill, Numbers, read_arrays};
 pub use covariate::{CovariateChoice, Covariates};
 pub use cuts::{Cuts, Moment, TimeRange};
 pub(crate) use faults::{rate_of, said as repeats_said};
-pub use file::{read, read_for_fit, read_for_page, read_in_two, read_with_evidence};
+pub use file::{read, read_for_fit, read_for_page, read_in_two, read_part, read_with_evidence};
 pub use names::TimeUnit;
 pub(crate) use names::is_degrees_column;
 pub use octaves::accumulate;
@@ -314,6 +316,9 @@ pub struct Evidence {
     /// The spectrogram, for a page that shows it, and nobody else keeps.
     #[serde(skip)]
     pub spectrogram: Option<Spectrogram>,
+    /// What rejoins the axis with its neighbours, if the log is a part of a longer record.
+    #[serde(skip)]
+    pub pieces: Option<Pieces>,
 }
 
 /// Motion during a record, or its spikes. A gyro that turns about one axis is not at rest about the others.

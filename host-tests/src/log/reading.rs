@@ -7,7 +7,8 @@ use super::{
     clock::Clock,
     cuts::Dropped,
     evidence::{self, Recorded, spread_motion},
-    faults,
+    faults, part,
+    quantum::Quantum,
     scaling::{self, Origin, Scaling},
     sums::Sums,
     table::Table,
@@ -31,6 +32,8 @@ pub(super) struct Watched<'a> {
     pub(super) moments: bool,
     /// Whether the spectrogram is needed.
     pub(super) spectrogram: bool,
+    /// The number of the first sample in the record, if the log is a part of a longer one.
+    pub(super) first_sample: Option<u64>,
 }
 
 /// Reads the first rows of a table, and the axes of the remaining rows if a number of first rows is
@@ -114,6 +117,7 @@ pub(super) fn read_table(
             covariates: covariates.clone(),
             moments: watch.moments,
             spectrogram: watch.spectrogram,
+            first_sample: watch.first_sample,
         }),
         faults: faults::Plan {
             by_rows: table.by_rows() || columns.len() == 1,
@@ -161,7 +165,7 @@ pub(super) fn read_table(
         )
     }));
     notes.extend(table.notes());
-    notes.extend(repeats);
+    notes.extend(repeats.clone());
     let mut least = 0.0_f64;
     notes.extend(measured.tally.note());
     notes.extend(passes.left_out(&measured.tally, logged_hz)?);
@@ -185,7 +189,7 @@ pub(super) fn read_table(
         .then(|| 1.0 / scaling.unit.in_usual());
     let some_change = measured.axes.iter().any(|(sums, _)| !is_constant(sums));
     let measured_axes = axis_columns.into_iter().zip(measured.axes);
-    for (place, (column, (sums, quantum))) in measured_axes.enumerate() {
+    for (place, (column, (mut sums, quantum))) in measured_axes.enumerate() {
         if some_change && is_constant(&sums) {
             let name = column.axis;
             notes.push(format!("axis {name} never changes its value: left out"));
@@ -208,7 +212,16 @@ pub(super) fn read_table(
             rest.push(behind);
         }
         check_axis(path, &axis)?;
-        if let Sums::Watched(watched, beside) = &sums {
+        if let Sums::Watched(watched, beside) = &mut sums {
+            let part = beside.take_part();
+            let part = part.map(|part| match (&repeats, quantum == Quantum::WHOLE) {
+                (_, false) => Err(part::refused(
+                    path,
+                    "its values are no whole numbers of 32 bits",
+                )),
+                (Some(_), _) => Err(part::refused(path, "the logger repeated samples")),
+                _ => part.finish(path, rate_hz, axis.rate_per_count),
+            });
             let coarse = measured.coarse.get(place).copied().flatten();
             let fault = measured.faults.verdict(place);
             let motion = is_gyro
@@ -229,6 +242,7 @@ pub(super) fn read_table(
                 course: Some(*beside.course.clone()),
                 means: recorded.means(&measured.blocks, place, axis.rate_per_count),
                 spectrogram: beside.spectrogram(rate_hz, axis.rate_per_count),
+                pieces: part.transpose()?,
                 ..evidence
             });
         }

@@ -1,8 +1,8 @@
 //! What is kept of an axis while a log is read.
 
 use super::{
-    OCTAVES, Spectrogram, SpectrumSums, disturbed::Extremes, spectrogram::SpectrogramSums,
-    watched::WatchedAxis,
+    OCTAVES, Spectrogram, SpectrumSums, disturbed::Extremes, part::PartSums,
+    spectrogram::SpectrogramSums, watched::WatchedAxis,
 };
 use allanite::{Accumulator, course::Course};
 
@@ -27,15 +27,18 @@ pub(super) struct OwnSums {
     pub(super) course: Box<Course>,
     pub(super) extremes: Extremes,
     spectrogram: Option<Box<SpectrogramSums>>,
+    part: Option<Box<PartSums>>,
 }
 
 impl OwnSums {
-    pub(super) fn new(has_spectrogram: bool) -> Self {
+    /// Nothing yet. A log that is a part of a longer record tells the number of its first sample.
+    pub(super) fn new(has_spectrogram: bool, first_sample: Option<u64>) -> Self {
         Self {
             spectrum: Box::new(SpectrumSums::new()),
             course: Box::new(Course::new()),
             extremes: Extremes::new(),
             spectrogram: has_spectrogram.then(|| Box::new(SpectrogramSums::new())),
+            part: first_sample.map(|first| Box::new(PartSums::new(first))),
         }
     }
 
@@ -45,6 +48,9 @@ impl OwnSums {
         self.extremes.push(counts);
         if let Some(spectrogram) = &mut self.spectrogram {
             spectrogram.push(counts);
+        }
+        if let Some(part) = &mut self.part {
+            part.push(counts);
         }
     }
 
@@ -56,12 +62,20 @@ impl OwnSums {
         if let Some(spectrogram) = &mut self.spectrogram {
             spectrogram.gap(missing);
         }
+        if let Some(part) = &mut self.part {
+            part.gap(missing);
+        }
     }
 
     /// The spectrogram, if it was asked for and the record is long enough.
     pub(super) fn spectrogram(&self, rate_hz: f64, rate_per_count: f64) -> Option<Spectrogram> {
         let sums = self.spectrogram.as_ref()?;
         sums.spectrogram(rate_hz, rate_per_count)
+    }
+
+    /// What rejoins the axis with its neighbours, if the log is a part of a longer record.
+    pub(super) fn take_part(&mut self) -> Option<PartSums> {
+        self.part.take().map(|part| *part)
     }
 }
 

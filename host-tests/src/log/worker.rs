@@ -33,6 +33,8 @@ pub(super) struct Watch {
     pub(super) moments: bool,
     /// Whether the spectrogram is kept, which only a page shows.
     pub(super) spectrogram: bool,
+    /// The number of the first sample in the record, if the log is a part of a longer one.
+    pub(super) first_sample: Option<u64>,
 }
 
 impl Plan {

@@ -119,6 +119,24 @@ pub(crate) fn measure(path: &Path, arguments: &LogArguments) -> Result<Vec<AxisC
     curves(&log)
 }
 
+/// Measures the curves of a log that is a part of a longer record and begins with its sample `first`.
+pub(crate) fn measure_part(
+    path: &Path,
+    arguments: &LogArguments,
+    first: u64,
+) -> Result<Vec<AxisCurve>, Failure> {
+    let options = arguments.options();
+    let read =
+        |file: &Path, bar: &indicatif::ProgressBar| log::read_part(file, &options, first, bar);
+    let log = reading(path, read)?;
+    note(path, &log);
+    let pieces = log.axes.into_iter().filter_map(|axis| {
+        let pieces = axis.evidence?.pieces?;
+        Some(pieces.part(&axis.name, log.unit))
+    });
+    pieces.collect()
+}
+
 /// The curves of a log with the evidence that it holds beside them. The evidence of a curve file is
 /// empty.
 pub(crate) fn read_with_evidence(

@@ -1,0 +1,103 @@
+//! The powers of the segments of one level of the spectrum.
+
+use super::{edges::EDGE, exact_sum::ExactSum};
+use crate::log::SEGMENT;
+use allanite::spectrum::segment_powers;
+use serde::{Deserialize, Serialize};
+use std::ops::Range;
+
+/// The number of bins of a level.
+pub(super) const BINS: usize = SEGMENT / 2 - SEGMENT / 16;
+
+/// The number of blocks from the start of a segment to that of the next one.
+const HOP: u64 = SEGMENT as u64 / 2;
+
+const _: () = assert!(SEGMENT == EDGE, "a piece keeps the boundaries of a segment");
+
+/// The segments of a level that lie between these boundaries of its blocks: the numbers of the first blocks, in units of a
+/// [`HOP`].
+pub(super) fn segments(boundaries: &Range<u64>) -> Range<u64> {
+    let first = boundaries.start.div_ceil(HOP);
+    let last = boundaries.end.checked_sub(SEGMENT as u64 + 1);
+    first..last.map_or(first, |last| first.max(last / HOP + 1))
+}
+
+/// The exact sums over the segments of one level.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) struct Powers {
+    /// For each bin, the sum of the powers and that of their squares. Empty without a segment.
+    bins: Vec<[ExactSum; 2]>,
+}
+
+impl Powers {
+    /// Adds the segments that begin at these numbers. `angle` tells the angle at a boundary of blocks of `2^block_bits` samples.
+    /// The segments have all their boundaries.
+    pub(super) fn add(
+        &mut self,
+        segments: Range<u64>,
+        block_bits: u32,
+        angle: impl Fn(u64) -> i64,
+    ) {
+        let starts: Vec<u64> = segments.map(|segment| segment * HOP).collect();
+        // The factor of 1/8 takes back that of the transform. The unit of 2^16 counts keeps powers of full scale within the
+        // range of single precision, as in the accumulator.
+        let scale = 2f32.powi(-(block_bits as i32 + UNIT_BITS + 3));
+        for group in starts.chunks(4) {
+            let mut values = [[0.0; SEGMENT]; 4];
+            for (values, &start) in values.iter_mut().zip(group) {
+                let mut before = angle(start);
+                let mut first = None;
+                for (value, boundary) in values.iter_mut().zip(start + 1..) {
+                    let after = angle(boundary);
+                    let block = after.wrapping_sub(before);
+                    let first = *first.get_or_insert(block);
+                    *value = block.wrapping_sub(first) as f32 * scale;
+                    before = after;
+                }
+            }
+            segment_powers(&mut values);
+            for powers in values.iter().take(group.len()) {
+                self.add_segment(powers);
+            }
+        }
+    }
+
+    fn add_segment(&mut self, powers: &[f32; SEGMENT]) {
+        if self.bins.is_empty() {
+            self.bins = vec![Default::default(); BINS];
+        }
+        for ([sum, squares], &power) in self.bins.iter_mut().zip(powers) {
+            sum.add(power);
+            squares.add(power * power);
+        }
+    }
+
+    /// Adds the segments of another piece.
+    pub(super) fn join(&mut self, other: &Self) {
+        if self.bins.is_empty() {
+            self.bins.clone_from(&other.bins);
+            return;
+        }
+        for (own, other) in self.bins.iter_mut().zip(&other.bins) {
+            for (own, other) in own.iter_mut().zip(other) {
+                own.join(other);
+            }
+        }
+    }
+
+    /// The sums of powers and of their squares of all bins, in the unit of the accumulator.
+    pub(super) fn sums(&self) -> impl Iterator<Item = [f64; 2]> + '_ {
+        self.bins
+            .iter()
+            .map(|sums| sums.each_ref().map(ExactSum::value))
+    }
+
+    /// Whether so many segments can have these sums.
+    pub(super) fn is_possible(&self, segments: u64) -> bool {
+        let bins = if segments == 0 { 0 } else { BINS };
+        self.bins.len() == bins && self.bins.iter().flatten().all(ExactSum::is_possible)
+    }
+}
+
+/// The unit of the values that are transformed is this power of two, in counts.
+pub(super) const UNIT_BITS: i32 = 16;

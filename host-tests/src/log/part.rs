@@ -2,7 +2,7 @@
 
 use crate::{
     failure::{Failure, Place},
-    pieces::Pieces,
+    pieces::{Gathered, Pieces},
 };
 use std::path::Path;
 
@@ -10,49 +10,34 @@ use std::path::Path;
 pub(super) struct PartSums {
     /// The number of the next sample in the record.
     next: u64,
-    pieces: Pieces,
+    gathered: Gathered,
     /// Why the numbers of further samples are not known.
     flaw: Option<&'static str>,
-    /// The samples that wait to be long enough for a piece.
-    waiting: Vec<i32>,
 }
-
-/// The number of samples from which on a piece is made.
-const LONG: usize = 1 << 16;
 
 impl PartSums {
     /// Nothing yet of a log that begins with this sample of the record.
-    pub(super) fn new(first: u64) -> Self {
+    pub(super) const fn new(first: u64) -> Self {
         Self {
             next: first,
-            pieces: Pieces::EMPTY,
+            gathered: Gathered::new(Pieces::EMPTY),
             flaw: None,
-            waiting: Vec::new(),
         }
     }
 
     pub(super) fn push(&mut self, counts: &[i32]) {
-        self.waiting.extend_from_slice(counts);
-        if self.waiting.len() >= LONG {
-            self.work();
+        if self.flaw.is_none() && self.gathered.push(self.next, counts).is_err() {
+            self.flaw = Some("the numbers of its samples exceed 2^50");
         }
+        self.next = self.next.saturating_add(counts.len() as u64);
     }
 
     /// Tells that so many samples are missing here; none if their number is not known.
     pub(super) fn gap(&mut self, missing: u64) {
-        self.work();
         if missing == 0 {
             self.flaw = Some("nobody knows how many samples a gap lost");
         }
         self.next = self.next.saturating_add(missing);
-    }
-
-    fn work(&mut self) {
-        if self.flaw.is_none() && self.pieces.push(self.next, &self.waiting).is_err() {
-            self.flaw = Some("the numbers of its samples exceed 2^50");
-        }
-        self.next = self.next.saturating_add(self.waiting.len() as u64);
-        self.waiting.clear();
     }
 
     /// The pieces, of a sensor with this rate in samples per second and this scale in rate units per count.
@@ -65,10 +50,12 @@ impl PartSums {
         rate_hz: f64,
         rate_per_count: f64,
     ) -> Result<Pieces, Failure> {
-        self.work();
         match self.flaw {
             Some(flaw) => Err(refused(path, flaw)),
-            None => Ok(self.pieces.of_sensor(rate_hz, rate_per_count)),
+            None => {
+                let pieces = self.gathered.pieces().clone();
+                Ok(pieces.of_sensor(rate_hz, rate_per_count))
+            }
         }
     }
 }

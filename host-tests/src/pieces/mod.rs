@@ -16,12 +16,15 @@
 mod curve;
 mod edges;
 mod exact_sum;
+mod gathered;
 mod piece;
 mod powers;
 mod squares;
 mod state;
 #[cfg(test)]
 mod tests;
+
+pub use gathered::Gathered;
 
 use crate::failure::Failure;
 use piece::Piece;
@@ -101,16 +104,27 @@ impl Pieces {
     /// # Errors
     /// When some of these samples are there already, or their numbers are too large. Nothing is added then.
     pub fn push(&mut self, first: u64, counts: &[i32]) -> Result<(), Failure> {
-        let end = u64::try_from(counts.len()).ok();
-        let end = end.and_then(|length| first.checked_add(length));
-        let Some(end) = end.filter(|&end| end <= MOST_SAMPLES) else {
-            return Err(Failure::option(
+        let range = Self::range(first, counts)?;
+        self.is_free(&range)?;
+        self.put(first, counts);
+        Ok(())
+    }
+
+    /// The numbers of these samples.
+    fn range(first: u64, counts: &[i32]) -> Result<Range<u64>, Failure> {
+        let end = first.checked_add(counts.len() as u64);
+        let end = end.filter(|&end| end <= MOST_SAMPLES);
+        end.map(|end| first..end).ok_or_else(|| {
+            Failure::option(
                 format!("sample {first} has a number above 2^50"),
                 "count the samples of a record from its first one on",
-            ));
-        };
-        self.is_free(first..end)?;
-        // The first one may be shorter, so that the others need no boundary of a neighbour.
+            )
+        })
+    }
+
+    /// Adds samples of which none is there.
+    fn put(&mut self, first: u64, counts: &[i32]) {
+        // The first chunk may be shorter, so that the others begin at boundaries of long blocks.
         let room = CHUNK - (first % CHUNK as u64) as usize;
         let (head, rest) = counts.split_at(room.min(counts.len()));
         let mut number = first;
@@ -120,7 +134,6 @@ impl Pieces {
             }
             number += chunk.len() as u64;
         }
-        Ok(())
     }
 
     /// Adds samples with their numbers in the record, in any order.
@@ -184,7 +197,7 @@ impl Pieces {
         }
         other
             .stretches()
-            .try_for_each(|range| self.is_free(range))?;
+            .try_for_each(|range| self.is_free(&range))?;
         for piece in other.stretches {
             self.insert(piece);
         }
@@ -192,7 +205,7 @@ impl Pieces {
     }
 
     /// Whether none of these samples is there.
-    fn is_free(&self, range: Range<u64>) -> Result<(), Failure> {
+    fn is_free(&self, range: &Range<u64>) -> Result<(), Failure> {
         let after = self
             .stretches
             .partition_point(|piece| piece.range().end <= range.start);

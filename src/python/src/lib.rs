@@ -10,6 +10,7 @@ mod comparison;
 mod diagnosis;
 mod error;
 mod own;
+mod pieces;
 mod record;
 mod table;
 mod watched;
@@ -27,6 +28,8 @@ mod _native {
     use super::diagnosis::Diagnosis;
     #[pymodule_export]
     use super::own::OwnEffect;
+    #[pymodule_export]
+    use super::pieces::Pieces;
     #[pymodule_export]
     use super::record::{Record, deviations};
 }

@@ -22,6 +22,8 @@ use crate::{
     curve_file::{AxisCurve, CurveFile},
     failure::Failure,
     log::{self, Arrays, Evidence, Log},
+    pieces::Pieces,
+    unit::Unit,
 };
 use clap::Args;
 use indicatif::ProgressBar;
@@ -43,6 +45,13 @@ struct Reading {
     covariates: CovariateArguments,
     #[command(flatten)]
     about_log: LogArguments,
+}
+
+/// The unit of axes that were read in pieces.
+#[derive(Args)]
+struct Unitary {
+    #[arg(long, default_value = "deg/s")]
+    unit: Unit,
 }
 
 /// How axes are fitted.
@@ -111,6 +120,39 @@ impl Record {
         let (options, covariates) = (about_log.options(), covariates.tried());
         let log = log::read_arrays(arrays, &options, &covariates, progress)?;
         Self::of_log(arrays.path(), log)
+    }
+
+    /// The record of axes that were read in pieces.
+    ///
+    /// # Errors
+    /// When an axis has too few samples, or the axes differ in rate.
+    pub fn of_pieces(axes: &[(String, Pieces)], options: &[String]) -> Result<Self, Failure> {
+        let Unitary { unit } = parse(options)?;
+        let Some((first, pieces)) = axes.first() else {
+            return Err(Failure::option(
+                "there is no axis",
+                "give the pieces of one",
+            ));
+        };
+        if let Some((axis, other)) = axes
+            .iter()
+            .find(|(_, other)| other.rate_hz() != pieces.rate_hz())
+        {
+            let (one, other) = (pieces.rate_hz(), other.rate_hz());
+            return Err(Failure::option(
+                format!("axis {axis} has the rate {other}, and axis {first} {one}"),
+                "give axes of one sensor",
+            ));
+        }
+        let curve = |(axis, pieces): &(String, Pieces)| {
+            let curve = pieces.clone().part(axis, unit)?;
+            Ok((curve, Evidence::default()))
+        };
+        Ok(Self {
+            path: PathBuf::from("pieces"),
+            axes: axes.iter().map(curve).collect::<Result<_, Failure>>()?,
+            notes: Vec::new(),
+        })
     }
 
     /// The record of a log that was read.

@@ -32,6 +32,7 @@ from ._parts import (
     Stretch,
     Worst,
 )
+from ._pieces import Pieces
 from ._record import Record, read
 from .effects import *  # noqa: F403
 from .effects import CATALOGUE
@@ -59,6 +60,7 @@ __all__ = [
     "Octave",
     "OwnEffect",
     "Picture",
+    "Pieces",
     "Record",
     "SpectralLine",
     "Step",

@@ -24,6 +24,11 @@ pub(crate) struct KnownFilter {
 }
 
 impl KnownFilter {
+    /// Whether no filter is known.
+    pub(crate) const fn is_none(&self) -> bool {
+        self.filter.is_none()
+    }
+
     /// The five terms, behind the filter if there is one.
     ///
     /// # Errors

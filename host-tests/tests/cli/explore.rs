@@ -1,7 +1,7 @@
 //! Tests the page of `explore`: in a browser, effects are added and moved by hand as a user does it.
 
 use crate::browser::Browser;
-use crate::whole_page::{explored, settle};
+use crate::whole_page::{self, explored, settle};
 use host_tests::program::{ADIS16405, json, output};
 use serde_json::{Value, json};
 use std::{
@@ -337,4 +337,60 @@ fn one_record_is_fitted_and_another_judges_and_the_diagnosis_is_asked() {
         rows.iter()
             .any(|row| &row[0] == "gx of after.csv" && &row[1] == "spectrum")
     );
+}
+
+#[test]
+fn a_report_carries_the_program_with_which_its_reader_tries_an_effect() {
+    let folder = TempDir::new().unwrap();
+    let Some(empty) = whole_page::empty(folder.path()) else {
+        return;
+    };
+    let written = folder.path().join("report.html");
+    let report = |options: &[&str]| {
+        let files = ["report", ADIS16405, "--output", written.to_str().unwrap()];
+        let said = output(Path::new("."), &[&files, options].concat());
+        (said, fs::read_to_string(&written).unwrap())
+    };
+    let (said, plain) = report(&["--plain"]);
+    assert!(
+        said.contains("`explore` changes the effects by hand"),
+        "{said}"
+    );
+    assert!(plain.len() < 500_000 && !plain.contains("id=\"explorer\""));
+    let (said, page) = report(&["--page", empty.to_str().unwrap()]);
+    assert!(
+        said.contains("where effects can be tried by hand"),
+        "{said}"
+    );
+    assert!(page.len() < plain.len() + 1_700_000, "{}", page.len());
+
+    // The report is what it was, and its link opens the other state of the page.
+    let mut browser = Browser::start();
+    browser.open(&format!("file://{}", written.display()));
+    assert_eq!(browser.text("#try"), "Try effects on these records");
+    assert_eq!(browser.small_targets(), json!([]));
+    let shown = browser.text(".summary");
+    browser.value("location.href = byId('try').href");
+    let begin = Instant::now();
+    while browser.value("document.querySelector('#catalogue li') === null") != false {
+        assert!(begin.elapsed() < Duration::from_secs(60), "not opened");
+        thread::sleep(Duration::from_millis(20));
+    }
+    let five = chi2(&mut browser);
+    assert!(
+        (five / compared(&[ADIS16405], 0) - 1.0).abs() < 1e-6,
+        "{five}"
+    );
+    // What the report found is one click away, and explains the record.
+    browser.click("#adopt");
+    settle(&mut browser);
+    let found = as_the_command_says(&mut browser, 0);
+    assert!(chi2(&mut browser) < five / 10.0);
+    assert!((chi2(&mut browser) / found - 1.0).abs() < 1e-6);
+    let words = browser.text("#lead-words");
+    assert!(
+        shown.contains("decimation filter") && words.contains("decimation filter"),
+        "{shown} {words}"
+    );
+    assert!(browser.complaints.is_empty(), "{:?}", browser.complaints);
 }

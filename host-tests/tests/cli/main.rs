@@ -45,6 +45,7 @@ mod overbound;
 mod plot;
 mod readme;
 mod record_over_time;
+mod rejoin;
 mod report;
 mod report_figures;
 mod report_layout;

@@ -17,7 +17,7 @@ use crate::{
     dependence::candidates::{Candidate as Series, Candidates},
     diagnosis::{diagnose, go_on},
     failure::Failure,
-    log::{BINS, Disturbance, Evidence, OCTAVES},
+    log::{BINS, Disturbance, Evidence, OCTAVES, Spectrogram},
 };
 use allanite::{
     Curve, Error, Model, Record, Scale, Term,
@@ -52,6 +52,25 @@ impl DiagnosisArguments {
     pub(crate) fn diagnosed(&self) -> Result<Vec<Diagnosed>, Failure> {
         self.settings.diagnosed(&self.input)
     }
+
+    /// Diagnoses every axis of the input, and keeps the spectrogram of each beside it, for a page that shows it.
+    ///
+    /// # Errors
+    /// When the input cannot be read, or an axis cannot be fitted.
+    pub(crate) fn diagnosed_for_page(&self) -> Result<Vec<OfPage>, Failure> {
+        let DiagnosisSettings {
+            about_log,
+            covariates,
+            ..
+        } = &self.settings;
+        let axes = record::read_for_page(&self.input, about_log, covariates)?;
+        self.settings.diagnosed_of(&self.input, axes)
+    }
+
+    /// Whether the search begins with the five terms and ends where it ends by itself.
+    pub(crate) fn is_plain(&self) -> bool {
+        self.settings.max_effects.is_none() && self.settings.filter.is_none()
+    }
 }
 
 /// The settings of a diagnosis.
@@ -71,13 +90,24 @@ pub(crate) struct DiagnosisSettings {
 impl DiagnosisSettings {
     /// Diagnoses every axis of a record.
     pub(crate) fn diagnosed(&self, path: &Path) -> Result<Vec<Diagnosed>, Failure> {
+        let axes = record::read_with_evidence(path, &self.about_log, &self.covariates)?;
+        let diagnosed = self.diagnosed_of(path, axes)?.into_iter();
+        Ok(diagnosed.map(|(diagnosed, _)| diagnosed).collect())
+    }
+
+    fn diagnosed_of(
+        &self,
+        path: &Path,
+        axes: Vec<(AxisCurve, Evidence)>,
+    ) -> Result<Vec<OfPage>, Failure> {
         let model = self.filter.model()?;
-        let diagnose = |(axis, evidence): (AxisCurve, Evidence)| {
+        let diagnose = |(axis, mut evidence): (AxisCurve, Evidence)| {
             let name = axis.axis.clone();
+            let spectrogram = evidence.spectrogram.take();
             Diagnosed::new(axis, evidence, &model, self.max_effects)
+                .map(|diagnosed| (diagnosed, spectrogram))
                 .map_err(|error| record::library_failure(path, &name, error))
         };
-        let axes = record::read_with_evidence(path, &self.about_log, &self.covariates)?;
         // A page has no threads. The first failure is that of the first axis that has one.
         let diagnosed: Vec<_> = match cfg!(target_family = "wasm") {
             true => axes.into_iter().map(diagnose).collect(),
@@ -86,6 +116,9 @@ impl DiagnosisSettings {
         diagnosed.into_iter().collect()
     }
 }
+
+/// An axis, and its spectrogram, if it is a log that is long enough.
+pub(crate) type OfPage = (Diagnosed, Option<Spectrogram>);
 
 /// One axis, and the steps from the five terms to the last model.
 pub(crate) struct Diagnosed {

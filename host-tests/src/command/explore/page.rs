@@ -27,8 +27,11 @@ pub(super) fn write(
     document: &str,
     output: &mut impl Write,
 ) -> Result<(), Failure> {
-    let empty = arguments.page.clone().map_or_else(beside, Ok)?;
-    let page = filled(&empty, document)?;
+    let page = arguments.page.clone().map_or_else(beside, Ok)?;
+    let [before, behind] = empty(&page)?;
+    // Without `<`, no text in the records can end the script element.
+    let document = document.replace('<', "\\u003c");
+    let page = [&before, &*document, &behind].concat();
     let path = match &arguments.output {
         Some(path) => {
             let inputs = arguments.inputs.iter().map(PathBuf::as_path);
@@ -72,15 +75,23 @@ fn beside() -> Result<PathBuf, Failure> {
     })
 }
 
-/// The empty page with the records in it.
-fn filled(empty: &Path, document: &str) -> Result<String, Failure> {
-    let (file, _) = regular_file::open(empty)?;
+/// This empty page, or the one that was built or installed with the program, if it is there and of this version.
+pub(super) fn empty_page(page: Option<&Path>) -> Result<Option<[String; 2]>, Failure> {
+    match page {
+        Some(page) => empty(page).map(Some),
+        None => Ok(beside().ok().and_then(|page| empty(&page).ok())),
+    }
+}
+
+/// The empty page: what stands before the records and behind them.
+fn empty(path: &Path) -> Result<[String; 2], Failure> {
+    let (file, _) = regular_file::open(path)?;
     let mut page = String::new();
     file.take(LARGEST)
         .read_to_string(&mut page)
-        .map_err(|error| Place::file(empty).io(&error))?;
+        .map_err(|error| Place::file(path).io(&error))?;
     let wrong = |what: &str| {
-        Place::file(empty).failure(
+        Place::file(path).failure(
             what,
             "build the page of this version with `cargo xtask page`",
         )
@@ -92,9 +103,7 @@ fn filled(empty: &Path, document: &str) -> Result<String, Failure> {
     let (before, behind) = page
         .split_once(PLACE)
         .ok_or_else(|| wrong("has no place for records"))?;
-    // Without `<`, no text in the records can end the script element.
-    let document = document.replace('<', "\\u003c");
-    Ok([before, PLACE, &document, behind].concat())
+    Ok([format!("{before}{PLACE}"), behind.to_owned()])
 }
 
 /// Writes a page among the temporary files, for this user alone.

@@ -64,22 +64,23 @@ pub(super) fn read(arguments: &Arguments) -> Result<Vec<(SessionRecord, ListedRe
         let name = axis.axis.clone();
         let diagnosed = Diagnosed::new(axis, evidence, &Model::ieee_952(), None);
         diagnosed
-            .and_then(|diagnosed| explored(path, diagnosed, spectrogram))
+            .and_then(|diagnosed| explored(path, &diagnosed, spectrogram))
             .map_err(|error| library_failure(path, &name, error))
     };
     all.into_par_iter().map(diagnose).collect()
 }
 
-fn explored(
+/// An axis that was diagnosed, as a session keeps it and as the page shows it.
+pub(super) fn explored(
     path: &Path,
-    diagnosed: Diagnosed,
+    diagnosed: &Diagnosed,
     spectrogram: Option<Spectrogram>,
 ) -> Result<(SessionRecord, ListedRecord), allanite::Error> {
-    let taken_out = TakenOut::of(&diagnosed)?;
-    let (thought, course) = (think(&diagnosed), pictures::course(&diagnosed));
+    let taken_out = TakenOut::of(diagnosed)?;
+    let (thought, course) = (think(diagnosed), pictures::course(diagnosed));
     let record = SessionRecord {
         input: path.to_string_lossy().into_owned(),
-        axis: diagnosed.axis,
+        axis: diagnosed.axis.clone(),
         taken_out,
     };
     let listed = ListedRecord {

@@ -11,13 +11,17 @@ use super::{
     shell,
 };
 use crate::{
-    command::output::glossary::{self, Word},
+    command::{
+        diagnose::diagnosed::OfPage,
+        input::record::library_failure,
+        output::glossary::{self, Word},
+    },
     failure::Failure,
     plot,
 };
 use clap::Parser;
 use serde::{Deserialize, Serialize};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The version of the format. A page carries the program of its own version, so that no other is read.
 const VERSION: u32 = 1;
@@ -57,10 +61,29 @@ struct Read {
 /// # Errors
 /// When an input cannot be read, or an axis cannot be fitted.
 pub(super) fn document(arguments: &Arguments) -> Result<String, Failure> {
-    let (records, listed) = record::read(arguments)?.into_iter().unzip();
+    written(record::read(arguments)?, &arguments.inputs)
+}
+
+/// The document of records that are diagnosed already.
+///
+/// # Errors
+/// When an axis cannot be compared without what follows its covariates.
+pub(super) fn of_diagnosed(input: &Path, diagnosed: &[OfPage]) -> Result<String, Failure> {
+    let records = diagnosed.iter().map(|(diagnosed, spectrogram)| {
+        record::explored(input, diagnosed, spectrogram.clone())
+            .map_err(|error| library_failure(input, &diagnosed.axis.axis, error))
+    });
+    written(records.collect::<Result<_, _>>()?, &[input.to_owned()])
+}
+
+fn written(
+    records: Vec<(SessionRecord, ListedRecord)>,
+    inputs: &[PathBuf],
+) -> Result<String, Failure> {
+    let (records, listed) = records.into_iter().unzip();
     let session = Session {
         version: VERSION,
-        about_log: shell::about_log(std::env::args_os(), &arguments.inputs),
+        about_log: shell::about_log(std::env::args_os(), inputs),
         records,
     };
     let page = Page {

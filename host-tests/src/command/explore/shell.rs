@@ -52,6 +52,7 @@ pub(super) fn about_log(
             "--quiet",
             "-q",
             "--no-covariates",
+            "--plain",
             "--",
         ]
         .contains(&text.as_str());
@@ -63,7 +64,7 @@ pub(super) fn about_log(
             words.next();
             continue;
         }
-        if text == "explore" && !has_command {
+        if ["explore", "report"].contains(&text.as_str()) && !has_command {
             has_command = true;
             continue;
         }

@@ -6,7 +6,7 @@ mod page;
 use crate::{
     command::{
         diagnose::{self, diagnosed::DiagnosisArguments},
-        examples,
+        examples, explore,
         output::file::OutputFile,
     },
     failure::{Failure, Place},
@@ -26,6 +26,12 @@ pub(super) struct Arguments {
     /// The page to write: .html
     #[arg(long, short, value_name = "REPORT.html")]
     output: PathBuf,
+    /// Leave out the program with which readers of the page can try effects, which takes 1.5 MB
+    #[arg(long, conflicts_with = "page")]
+    plain: bool,
+    /// The empty page with that program, as `cargo xtask page` builds it [default: the one beside the program, if it is there]
+    #[arg(long, value_name = "FILE.html")]
+    page: Option<PathBuf>,
 }
 
 /// Runs the command.
@@ -36,7 +42,18 @@ pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), 
     }
     // The file comes first, so that an output that cannot be written is refused before the diagnosis.
     let mut file = OutputFile::create(&arguments.output, [&*arguments.diagnosis.input])?;
-    let diagnosed = arguments.diagnosis.diagnosed()?;
+    // What a reader tries begins with the five terms.
+    let can_carry = !arguments.plain && arguments.diagnosis.is_plain();
+    let empty = can_carry.then(|| explore::empty_page(arguments.page.as_deref()));
+    let (carried, diagnosed) = match empty.transpose()?.flatten() {
+        Some(empty) => {
+            let diagnosed = arguments.diagnosis.diagnosed_for_page()?;
+            let carried = explore::carried(empty, &arguments.diagnosis.input, &diagnosed)?;
+            let diagnosed = diagnosed.into_iter().map(|(diagnosed, _)| diagnosed);
+            (Some(carried), diagnosed.collect())
+        }
+        None => (None, arguments.diagnosis.diagnosed()?),
+    };
     let fail = |error: io::Error| place().io(&error);
     let pictured = json::document(&diagnosed);
     let mut text = Vec::new();
@@ -46,10 +63,14 @@ pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), 
         diagnosed: &diagnosed,
         json: &serde_json::to_string(&pictured).map_err(|error| fail(error.into()))?,
         text: &String::from_utf8_lossy(&text),
+        carried: carried.as_ref(),
     });
     file.write_all(page.as_bytes()).map_err(fail)?;
     file.commit()?;
-    let next = "open it in a browser; `explore` changes the effects by hand";
+    let next = match carried {
+        Some(_) => "open it in a browser, where effects can be tried by hand",
+        None => "open it in a browser; `explore` changes the effects by hand",
+    };
     diagnose::conclusion::print_written(
         &diagnosed.iter().collect::<Vec<_>>(),
         (&arguments.output, next),

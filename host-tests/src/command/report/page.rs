@@ -7,6 +7,7 @@ use crate::{
             diagnosed::Diagnosed,
             words::{lead, limits},
         },
+        explore::Carried,
         output::{glossary, shell::quoted, words},
     },
     failure::one_line,
@@ -40,6 +41,10 @@ const SCRIPTS: [&str; 14] = [
 /// The policy with which a browser loads nothing from elsewhere.
 const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; \
     base-uri 'none'; form-action 'none'";
+/// That of a report which carries a program: what it opens may compile that program and run it beside itself.
+const POLICY_OF_PROGRAM: &str = "default-src 'none'; style-src 'unsafe-inline'; \
+    script-src 'unsafe-inline' 'wasm-unsafe-eval' blob:; worker-src blob:; frame-src 'self'; img-src data:; \
+    base-uri 'none'; form-action 'none'";
 
 /// The content of the page.
 pub(super) struct Content<'a> {
@@ -49,6 +54,8 @@ pub(super) struct Content<'a> {
     pub(super) json: &'a str,
     /// The text that is shown if scripts are off.
     pub(super) text: &'a str,
+    /// The page on which effects are tried.
+    pub(super) carried: Option<&'a Carried>,
 }
 
 /// The page as HTML.
@@ -68,7 +75,7 @@ pub(super) fn page(content: &Content) -> String {
             head {
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width, initial-scale=1";
-                meta http-equiv="Content-Security-Policy" content=(POLICY);
+                meta http-equiv="Content-Security-Policy" content=(if content.carried.is_some() { POLICY_OF_PROGRAM } else { POLICY });
                 title { "Gyro noise of " (name) }
                 style { (PreEscaped(STYLE)) (PreEscaped(plot::effect_styles())) }
             }
@@ -76,6 +83,10 @@ pub(super) fn page(content: &Content) -> String {
                 header {
                     h1 { "Gyro noise of " span.name { (name) } }
                     (summary(content.diagnosed))
+                    @if content.carried.is_some() {
+                        // The script gives it an address.
+                        p.try { a #try hidden target="_blank" { "Try effects on these records" } }
+                    }
                     // The findings stand beside their places below: this is the same in sentences, to be copied.
                     details.conclusion {
                         summary { "The conclusion in sentences" }
@@ -94,11 +105,24 @@ pub(super) fn page(content: &Content) -> String {
                 }
                 script type="application/json" id="data" { (PreEscaped(json)) }
                 script type="application/json" id="glossary" { (PreEscaped(glossary)) }
+                @if let Some(carried) = content.carried { (explorer(carried)) }
                 @for script in SCRIPTS { script { (PreEscaped(script)) } }
             }
         }
     };
     page.into_string()
+}
+
+/// The page on which effects are tried, with its records, and the script that opens it.
+fn explorer(carried: &Carried) -> Markup {
+    // Without `<`, no text can end a script element.
+    let harmless = |text: String| PreEscaped(text.replace('<', "\\u003c"));
+    let page = serde_json::to_string(&carried.page).unwrap_or_default();
+    html! {
+        script type="application/json" id="explorer" { (harmless(page)) }
+        script type="application/json" id="session" { (harmless(carried.session.clone())) }
+        script { (PreEscaped(include_str!("../../report/try.js"))) }
+    }
 }
 
 /// The list of axes, with one sentence for each.

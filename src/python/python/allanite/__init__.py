@@ -5,7 +5,7 @@
 >>> print(diagnosis)                                                     # doctest: +SKIP
 """
 
-from . import effects
+from . import effects, fleet
 from ._accumulator import Accumulator
 from ._curve import Curve
 from ._deviations import Deviation, deviations
@@ -68,6 +68,7 @@ __all__ = [
     "Worst",
     "deviations",
     "effects",
+    "fleet",
     "read",
     *(effect.__name__ for effect in CATALOGUE),
 ]

@@ -57,7 +57,9 @@ class Pieces:
             raise AllaniteError(
                 "pieces", None, "the numbers of samples are no whole numbers from 0 on", "count the samples of the record",
             )
-        self._native.push_numbered(np.ascontiguousarray(numbers).astype(np.uint64, copy=False), _counts(counts))
+        contiguous = np.ascontiguousarray(numbers)
+        unsigned = contiguous.view(np.uint64) if contiguous.dtype == np.int64 else contiguous.astype(np.uint64, copy=False)
+        self._native.push_numbered(unsigned, _counts(counts))
 
     def merge(self, *others: Pieces) -> None:
         """Adds the pieces of other parts of the record. Neighbours are joined as if they had never been apart."""

@@ -28,7 +28,7 @@ impl Pieces {
                 differences: 0,
                 sum: 0,
             };
-            for piece in &self.stretches {
+            for piece in self.pieces() {
                 let (differences, sum) = piece.octave(octave);
                 all.differences += differences;
                 all.sum = all.sum.saturating_add(sum);
@@ -96,7 +96,7 @@ impl Pieces {
     fn level(&self, level: usize) -> Option<SpectrumLevel> {
         let mut segments = 0_u64;
         let mut powers = super::powers::Powers::default();
-        for piece in &self.stretches {
+        for piece in self.pieces() {
             let (own, sums) = piece.level(level);
             segments += own;
             powers.join(sums);

@@ -14,14 +14,13 @@ pub(super) fn boundaries(piece: &Range<u64>, block: u64) -> Range<u64> {
 
 /// Angles of a piece at boundaries between blocks of one length: the first and the last [`EDGE`] of them, or all if the piece
 /// has no more than both. They are counted from the beginning of the piece, and wrap.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Edges(Vec<i64>);
 
 impl Edges {
-    /// The edges among the angles at all boundaries.
-    pub(super) fn of(angles: &[i64]) -> Self {
-        let places = kept(angles.len() as u64);
-        Self(places.map(|place| angles[place as usize]).collect())
+    /// The edges of a piece with so many boundaries, whose angles `angle` tells.
+    pub(super) fn of(number: u64, angle: impl Fn(u64) -> i64) -> Self {
+        Self(kept(number).map(angle).collect())
     }
 
     /// The angle at the boundary `place` of `number`, if it is kept.

@@ -26,7 +26,14 @@ const MANTISSA_BITS: u32 = f32::MANTISSA_DIGITS - 1;
 /// The exponent of the last bit of a number whose exponent is written as 0.
 const LAST_BIT: i32 = 150;
 
-impl ExactSum {
+/// All places of a sum, for numbers that are added one after the other.
+#[derive(Clone, Copy)]
+pub(super) struct Places([u64; PLACES]);
+
+impl Places {
+    /// The sum of no numbers.
+    pub(super) const EMPTY: Self = Self([0; PLACES]);
+
     /// Adds a number.
     #[inline]
     pub(super) fn add(&mut self, number: f32) {
@@ -35,13 +42,26 @@ impl ExactSum {
         let fraction = bits & ((1 << MANTISSA_BITS) - 1);
         // A number without a leading one has the exponent of the smallest that has.
         let mantissa = fraction | u32::from(exponent > 0) << MANTISSA_BITS;
-        if mantissa == 0 {
-            return;
-        }
         let exponent = exponent.max(1);
         let shift = exponent % (1 << PLACE_BITS);
-        let value = u64::from(mantissa) << shift;
-        *self.place((exponent >> PLACE_BITS) as u8) += value;
+        let place = (exponent >> PLACE_BITS) as usize % PLACES;
+        self.0[place] += u64::from(mantissa) << shift;
+    }
+}
+
+impl ExactSum {
+    /// Adds the sum of these places.
+    pub(super) fn add(&mut self, places: &Places) {
+        for (place, &sum) in (0..).zip(&places.0) {
+            self.add_to(place, sum);
+        }
+    }
+
+    fn add_to(&mut self, place: u8, sum: u64) {
+        if sum > 0 {
+            let own = self.place(place);
+            *own = own.saturating_add(sum);
+        }
     }
 
     /// A place, which is made if it is not yet there.
@@ -65,10 +85,7 @@ impl ExactSum {
     /// Adds another sum.
     pub(super) fn join(&mut self, other: &Self) {
         for (place, &sum) in (other.lowest..).zip(&other.places) {
-            if sum > 0 {
-                let own = self.place(place);
-                *own = own.saturating_add(sum);
-            }
+            self.add_to(place, sum);
         }
     }
 
@@ -107,10 +124,12 @@ mod tests {
             f32::MAX,
         ];
         for number in numbers {
-            let mut sum = ExactSum::default();
+            let mut places = Places::EMPTY;
             for _ in 0..3 {
-                sum.add(number);
+                places.add(number);
             }
+            let mut sum = ExactSum::default();
+            sum.add(&places);
             assert_eq!(sum.value(), 3.0 * f64::from(number));
             assert!(sum.is_possible());
         }
@@ -123,7 +142,9 @@ mod tests {
             .collect();
         let sum = |numbers: &mut dyn Iterator<Item = f32>| {
             let mut sum = ExactSum::default();
-            numbers.for_each(|number| sum.add(number));
+            let mut places = Places::EMPTY;
+            numbers.for_each(|number| places.add(number));
+            sum.add(&places);
             sum
         };
         let forwards = sum(&mut numbers.iter().copied());

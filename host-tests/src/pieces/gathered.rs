@@ -1,7 +1,11 @@
 //! Samples that come in batches which are too short for a piece each.
 
-use super::{CHUNK, Pieces, twice};
+use super::{Pieces, twice};
 use crate::failure::Failure;
+
+/// The number of samples from which on a piece is made. Fewer of them take longer each, and more of them take memory in each of
+/// the groups of a large query. Chosen by hand.
+const LONG: usize = 1 << 13;
 
 /// Pieces, and neighbouring samples that wait to be long enough for a piece. What comes of them is the same.
 #[derive(Clone, Debug)]
@@ -39,7 +43,7 @@ impl Gathered {
             self.first = first;
         }
         self.waiting.extend_from_slice(counts);
-        if self.waiting.len() >= CHUNK {
+        if self.waiting.len() >= LONG {
             self.work();
         }
         Ok(())

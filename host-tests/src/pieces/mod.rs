@@ -29,7 +29,7 @@ pub use gathered::Gathered;
 use crate::failure::Failure;
 use piece::Piece;
 use serde::{Deserialize, Serialize};
-use std::ops::Range;
+use std::{collections::BTreeMap, ops::Range};
 
 /// The largest number that a sample can have: a thousand years at 33 kHz.
 pub const MOST_SAMPLES: u64 = 1 << 50;
@@ -44,8 +44,8 @@ pub struct Pieces {
     rate_hz: f64,
     /// Rate units per count.
     rate_per_count: f64,
-    /// The stretches, earliest first. No two of them touch.
-    stretches: Vec<Piece>,
+    /// The stretches, each under the number of its first sample. No two of them touch.
+    stretches: BTreeMap<u64, Box<Piece>>,
 }
 
 impl Pieces {
@@ -59,7 +59,7 @@ impl Pieces {
         Ok(Self {
             rate_hz,
             rate_per_count,
-            stretches: Vec::new(),
+            stretches: BTreeMap::new(),
         })
     }
 
@@ -67,7 +67,7 @@ impl Pieces {
     pub(crate) const EMPTY: Self = Self {
         rate_hz: 1.0,
         rate_per_count: 1.0,
-        stretches: Vec::new(),
+        stretches: BTreeMap::new(),
     };
 
     /// The same samples of a sensor with another rate and scale, which are positive and finite.
@@ -91,12 +91,17 @@ impl Pieces {
 
     /// The number of samples.
     pub fn samples(&self) -> u64 {
-        self.stretches.iter().map(Piece::samples).sum()
+        self.pieces().map(Piece::samples).sum()
     }
 
     /// The sample numbers of the contiguous stretches, earliest first.
     pub fn stretches(&self) -> impl Iterator<Item = Range<u64>> + '_ {
-        self.stretches.iter().map(Piece::range)
+        self.pieces().map(Piece::range)
+    }
+
+    /// The stretches, earliest first.
+    fn pieces(&self) -> impl Iterator<Item = &Piece> {
+        self.stretches.values().map(AsRef::as_ref)
     }
 
     /// Adds the counts of neighbouring samples, of which the first one has the number `first` in the record.
@@ -174,7 +179,7 @@ impl Pieces {
     /// The same sensor, without samples.
     fn without_samples(&self) -> Self {
         Self {
-            stretches: Vec::new(),
+            stretches: BTreeMap::new(),
             ..*self
         }
     }
@@ -198,20 +203,24 @@ impl Pieces {
         other
             .stretches()
             .try_for_each(|range| self.is_free(&range))?;
-        for piece in other.stretches {
-            self.insert(piece);
+        for piece in other.stretches.into_values() {
+            self.insert(*piece);
         }
         Ok(())
     }
 
     /// Whether none of these samples is there.
     fn is_free(&self, range: &Range<u64>) -> Result<(), Failure> {
-        let after = self
-            .stretches
-            .partition_point(|piece| piece.range().end <= range.start);
-        match self.stretches.get(after).map(Piece::range) {
-            Some(own) if own.start < range.end && !range.is_empty() => {
-                Err(twice(own.start.max(range.start)..own.end.min(range.end)))
+        // The last stretch that begins before their end.
+        let before = self.stretches.range(..range.end).next_back();
+        match before.map(|(_, piece)| piece.range()) {
+            Some(own) if own.end > range.start && !range.is_empty() => {
+                // Of several, the message names the first one.
+                let mut all = self.pieces().map(Piece::range);
+                let first = all.find(|own| own.end > range.start).unwrap_or(own);
+                Err(twice(
+                    first.start.max(range.start)..first.end.min(range.end),
+                ))
             }
             _ => Ok(()),
         }
@@ -220,17 +229,20 @@ impl Pieces {
     /// Adds a piece of which no sample is there.
     fn insert(&mut self, piece: Piece) {
         let range = piece.range();
-        let at = self
-            .stretches
-            .partition_point(|own| own.range().end < range.start);
-        match self.stretches.get_mut(at) {
-            Some(own) if own.range().end == range.start => own.join(&piece),
-            _ => self.stretches.insert(at, piece),
-        }
-        let next = self.stretches.get(at + 1).map(Piece::range);
-        if next.is_some_and(|next| next.start == range.end) {
-            let next = self.stretches.remove(at + 1);
-            self.stretches[at].join(&next);
+        let next = self.stretches.remove(&range.end);
+        let before = self.stretches.range_mut(..range.start).next_back();
+        let own = match before {
+            Some((_, before)) if before.range().end == range.start => {
+                before.join(&piece);
+                before
+            }
+            _ => self
+                .stretches
+                .entry(range.start)
+                .or_insert_with(|| Box::new(piece)),
+        };
+        if let Some(next) = next {
+            own.join(&next);
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::{
     edges::{Edges, Joint, boundaries},
     powers::{Powers, segments},
-    squares::{difference, squares},
+    squares::{Angle, NEAR, Near, difference},
 };
 use crate::log::{LEVELS, OCTAVES};
 use serde::{Deserialize, Serialize};
@@ -56,28 +56,47 @@ const fn length_of(octave: usize) -> usize {
 impl Piece {
     /// The piece of these counts, of which the first one is sample `start` of the record. There is one at least.
     pub(super) fn of(start: u64, counts: &[i32]) -> Self {
+        // A constant takes no part in differences and in powers. Without the first count, nearly all records have small angles.
+        let constant = counts.first().map_or(0, |&count| i64::from(count));
+        let (mut angle, mut farthest) = (0_i64, 0_u64);
+        for &count in counts {
+            angle += i64::from(count) - constant;
+            farthest = farthest.max(angle.unsigned_abs());
+        }
+        if farthest < NEAR.unsigned_abs() {
+            Self::of_angles::<Near>(start, counts, constant)
+        } else {
+            Self::of_angles::<i64>(start, counts, constant)
+        }
+    }
+
+    fn of_angles<A: Angle>(start: u64, counts: &[i32], constant: i64) -> Self {
         let mut angles = Vec::with_capacity(counts.len() + 1);
-        let mut angle = 0_i64;
+        let mut angle = A::default();
         angles.push(angle);
         angles.extend(counts.iter().map(|&count| {
-            angle = angle.wrapping_add(i64::from(count));
+            angle = angle.after(i64::from(count).wrapping_sub(constant));
             angle
         }));
         let range = start..start + counts.len() as u64;
         let mut sums = [0; OCTAVES];
         for (octave, sum) in sums.iter_mut().enumerate().take(FIRST) {
-            *sum = squares(&angles, 1 << octave);
+            *sum = A::squares(&angles, 1 << octave);
         }
         let mut powers: [Powers; LEVELS] = Default::default();
-        let mut edges = from_fn(|_| None);
+        let mut edges = from_fn(|_| Edges::default());
         for (bits, sum) in sums[FIRST..].iter_mut().enumerate() {
             let places = boundaries(&range, 1 << bits);
-            *sum = squares(&angles, 4);
+            *sum = A::squares(&angles, 4);
             if bits.is_multiple_of(RADIX_BITS) {
                 let length = bits / RADIX_BITS;
-                edges[length] = Some(Edges::of(&angles));
+                edges[length] = Edges::of(angles.len() as u64, |place| {
+                    let samples = ((places.start + place) << bits) - start;
+                    let of_constant = constant.wrapping_mul(samples as i64);
+                    angles[place as usize].wide().wrapping_add(of_constant)
+                });
                 if let Some(powers) = powers.get_mut(length) {
-                    let angle = |boundary: u64| angles[(boundary - places.start) as usize];
+                    let angle = |boundary: u64| angles[(boundary - places.start) as usize].wide();
                     powers.add(segments(&places), bits as u32, angle);
                 }
             }
@@ -92,9 +111,11 @@ impl Piece {
         Self {
             start,
             end: range.end,
-            total: angle,
+            total: angle
+                .wide()
+                .wrapping_add(constant.wrapping_mul(counts.len() as i64)),
             squares: sums,
-            edges: edges.map(|edges| edges.unwrap_or_else(|| Edges::of(&[]))),
+            edges,
             powers,
         }
     }

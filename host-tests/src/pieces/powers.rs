@@ -1,6 +1,9 @@
 //! The powers of the segments of one level of the spectrum.
 
-use super::{edges::EDGE, exact_sum::ExactSum};
+use super::{
+    edges::EDGE,
+    exact_sum::{ExactSum, Places},
+};
 use crate::log::SEGMENT;
 use allanite::spectrum::segment_powers;
 use serde::{Deserialize, Serialize};
@@ -39,6 +42,10 @@ impl Powers {
         angle: impl Fn(u64) -> i64,
     ) {
         let starts: Vec<u64> = segments.map(|segment| segment * HOP).collect();
+        if starts.is_empty() {
+            return;
+        }
+        let mut sums = [[Places::EMPTY; 2]; BINS];
         // The factor of 1/8 takes back that of the transform. The unit of 2^16 counts keeps powers of full scale within the
         // range of single precision, as in the accumulator.
         let scale = 2f32.powi(-(block_bits as i32 + UNIT_BITS + 3));
@@ -57,18 +64,19 @@ impl Powers {
             }
             segment_powers(&mut values);
             for powers in values.iter().take(group.len()) {
-                self.add_segment(powers);
+                for ([sum, squares], &power) in sums.iter_mut().zip(powers) {
+                    sum.add(power);
+                    squares.add(power * power);
+                }
             }
         }
-    }
-
-    fn add_segment(&mut self, powers: &[f32; SEGMENT]) {
         if self.bins.is_empty() {
             self.bins = vec![Default::default(); BINS];
         }
-        for ([sum, squares], &power) in self.bins.iter_mut().zip(powers) {
-            sum.add(power);
-            squares.add(power * power);
+        for (own, sums) in self.bins.iter_mut().zip(&sums) {
+            for (own, sum) in own.iter_mut().zip(sums) {
+                own.add(sum);
+            }
         }
     }
 

@@ -1,32 +1,85 @@
-//! Sums of squared differences.
+//! Angles of a chunk, and sums of their squared differences.
 
-/// The second differences of angles at a distance of `lag` boundaries: their number, and the sum of their squares, which stays
-/// at the largest number if 128 bits do not hold it.
-pub(super) fn squares(angles: &[i64], lag: usize) -> u128 {
+/// An angle, which may wrap.
+pub(super) trait Angle: Copy + Default {
+    /// The angle after a count.
+    fn after(self, count: i64) -> Self;
+
+    /// The angle in 64 bits.
+    fn wide(self) -> i64;
+
+    /// The sum of the squares of the second differences at a distance of `lag` angles. It stays at the largest number if 128
+    /// bits do not hold it.
+    fn squares(angles: &[Self], lag: usize) -> u128;
+}
+
+/// An angle of a chunk whose angles all lie within [`NEAR`] of zero.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Near(i32);
+
+/// Second differences of such angles have 28 bits, and the squares of 256 of them fit in 64.
+pub(super) const NEAR: i64 = 1 << 26;
+
+/// The number of squares that are added before the sum needs more bits.
+const BLOCK: usize = 256;
+
+impl Angle for Near {
+    #[inline(always)]
+    fn after(self, count: i64) -> Self {
+        Self(self.0.wrapping_add(count as i32))
+    }
+
+    #[inline(always)]
+    fn wide(self) -> i64 {
+        self.0.into()
+    }
+
+    fn squares(angles: &[Self], lag: usize) -> u128 {
+        let differences = differences(angles, lag);
+        let (oldest, middle, newest) = differences;
+        let mut all = 0;
+        let blocks = oldest.chunks(BLOCK).zip(middle.chunks(BLOCK));
+        for ((oldest, middle), newest) in blocks.zip(newest.chunks(BLOCK)) {
+            let mut sum = 0_u64;
+            for ((oldest, middle), newest) in oldest.iter().zip(middle).zip(newest) {
+                let late = newest.0.wrapping_sub(middle.0);
+                let difference = late.wrapping_sub(middle.0.wrapping_sub(oldest.0));
+                let magnitude = u64::from(difference.unsigned_abs());
+                sum = sum.wrapping_add(magnitude.wrapping_mul(magnitude));
+            }
+            all += u128::from(sum);
+        }
+        all
+    }
+}
+
+impl Angle for i64 {
+    #[inline(always)]
+    fn after(self, count: i64) -> Self {
+        self.wrapping_add(count)
+    }
+
+    #[inline(always)]
+    fn wide(self) -> i64 {
+        self
+    }
+
+    fn squares(angles: &[Self], lag: usize) -> u128 {
+        let (oldest, middle, newest) = differences(angles, lag);
+        let differences = oldest.iter().zip(middle).zip(newest);
+        let squares = differences.map(|((&oldest, &middle), &newest)| {
+            let magnitude = u128::from(difference(oldest, middle, newest).unsigned_abs());
+            magnitude * magnitude
+        });
+        squares.fold(0, u128::saturating_add)
+    }
+}
+
+/// The angles at the begin, the middle and the end of every difference.
+fn differences<A>(angles: &[A], lag: usize) -> (&[A], &[A], &[A]) {
     let number = angles.len().saturating_sub(2 * lag);
-    let (oldest, middle, newest) = (
-        &angles[..number],
-        &angles[lag.min(angles.len())..],
-        &angles[(2 * lag).min(angles.len())..],
-    );
-    let differences = oldest.iter().zip(middle).zip(newest);
-    let magnitudes = differences
-        .map(|((&oldest, &middle), &newest)| difference(oldest, middle, newest).unsigned_abs());
-    // A square of 32 bits is added in two halves, of which 2^32 fit in 64 bits. This needs no carry, so that the compiler
-    // computes several at once.
-    let (mut low, mut high, mut bits) = (0_u64, 0_u64, 0_u64);
-    for magnitude in magnitudes.clone() {
-        let narrow = u64::from(magnitude as u32);
-        let square = narrow.wrapping_mul(narrow);
-        low = low.wrapping_add(square & u64::from(u32::MAX));
-        high = high.wrapping_add(square >> 32);
-        bits |= magnitude;
-    }
-    if bits <= u64::from(u32::MAX) {
-        return (u128::from(high) << 32) + u128::from(low);
-    }
-    let squares = magnitudes.map(|magnitude| u128::from(magnitude) * u128::from(magnitude));
-    squares.fold(0, u128::saturating_add)
+    let from = |start: usize| angles.get(start..start + number).unwrap_or_default();
+    (from(0), from(lag), from(2 * lag))
 }
 
 /// `newest − 2 middle + oldest`, which is exact although the angles wrap.

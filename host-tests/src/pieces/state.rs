@@ -40,10 +40,11 @@ impl Pieces {
     pub(super) fn is_possible(&self) -> bool {
         let mut stretches = self.stretches.iter();
         // No two of them touch, so that a state has only one form.
-        let mut pairs = self.stretches.windows(2);
-        let are_apart = pairs.all(|pair| pair[0].range().end < pair[1].range().start);
+        let mut ends = self.pieces().map(|piece| piece.range().end);
+        let starts = self.stretches.keys().skip(1);
+        let are_apart = starts.zip(&mut ends).all(|(&start, end)| end < start);
         Self::new(self.rate_hz, self.rate_per_count).is_ok()
             && are_apart
-            && stretches.all(super::Piece::is_possible)
+            && stretches.all(|(&start, piece)| piece.range().start == start && piece.is_possible())
     }
 }

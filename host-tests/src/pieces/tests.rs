@@ -129,7 +129,7 @@ fn however_a_record_is_cut_and_joined_its_bytes_are_the_same() {
                 .iter()
                 .map(|stretch| definition(number(stretch.start), &counts[stretch.clone()], octave));
             let expected = sums.fold((0, 0), |all, one| (all.0 + one.0, all.1 + one.1));
-            let own = whole.stretches.iter().map(|piece| piece.octave(octave));
+            let own = whole.pieces().map(|piece| piece.octave(octave));
             let found = own.fold((0, 0), |all, one| (all.0 + one.0, all.1 + one.1));
             assert_eq!(found, expected, "trial {trial}, octave {octave}");
         }

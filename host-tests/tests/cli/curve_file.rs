@@ -269,8 +269,8 @@ fn text_that_is_not_a_curve_file_is_refused_with_its_line() {
         ),
         ("[1, 2]".into(), "c.json:1: not a curve file"),
         (
-            good.replace("\"version\": 4", "\"version\": 5"),
-            "c.json: the format has version 5",
+            good.replace(&format!("\"version\": {VERSION}"), "\"version\": 99"),
+            "c.json: the format has version 99",
         ),
         (
             good.replace(FORMAT, "another"),

@@ -2,6 +2,7 @@
 
     python fleet_times.py write FOLDER SAMPLES      # as many samples, in files of 2^24, in batches of 2^16
     python fleet_times.py decode FOLDER             # the batches of the files, one after the other
+    python fleet_times.py lengths FOLDER            # the same by DataFusion
     python fleet_times.py state FOLDER              # allan_state of all of them
     python fleet_times.py fit FOLDER                # and the fit of every axis
     python fleet_times.py devices COUNT SAMPLES     # from logs to coefficients of so many devices of three axes
@@ -19,6 +20,8 @@ import pyarrow.parquet as pq
 
 BATCH = 1 << 16
 FILE = 1 << 24
+#: Rows of a group of a file and of a batch of the engine: a million samples.
+ROWS = 16
 
 
 def measured(what, samples, work):
@@ -44,13 +47,13 @@ def write(folder, samples):
             "device": ["a"] * same, "axis": ["x"] * same, "start": pa.array(starts, pa.int64()),
             "rate": [1000.0] * same, "scale": [0.01] * same, "counts": lists,
         })
-        pq.write_table(table, folder / f"{number}.parquet", compression="zstd")
+        pq.write_table(table, folder / f"{number}.parquet", compression="zstd", row_group_size=ROWS)
 
 
 def decode(folder):
     samples = 0
     for file in sorted(folder.glob("*.parquet")):
-        for batch in pq.ParquetFile(file).iter_batches(use_threads=False):
+        for batch in pq.ParquetFile(file).iter_batches(ROWS, use_threads=False):
             samples += len(batch.column("counts").values)
     return samples
 
@@ -60,7 +63,8 @@ def session(folder):
 
     from allanite import fleet
 
-    context = fleet.register(datafusion.SessionContext())
+    settings = datafusion.SessionConfig().with_batch_size(ROWS)
+    context = fleet.register(datafusion.SessionContext(settings))
     context.register_parquet("logs", str(folder))
     return context
 
@@ -106,7 +110,10 @@ def main():
         metadata = pq.ParquetFile(file).metadata
         samples += sum(metadata.row_group(group).column(5).num_values for group in range(metadata.num_row_groups))
     if what == "decode":
-        return measured("decode", samples, lambda: decode(folder))
+        return measured("decode by Arrow", samples, lambda: decode(folder))
+    if what == "lengths":
+        query = "SELECT max(array_length(counts)) FROM logs"
+        return measured("decode by DataFusion", samples, lambda: session(folder).sql(query).collect())
     query = STATES if what == "state" else f"SELECT device, axis, allan_fit(state, 'deg/s') AS fit FROM ({STATES})"
     return measured(what, samples, lambda: session(folder).sql(query).collect())
 

@@ -1,7 +1,7 @@
 //! Bad input ends with one line, and no existing output is lost.
 
 use super::folder;
-use host_tests::program::refusal;
+use host_tests::{curve_file::VERSION, program::refusal};
 use std::fs;
 
 #[test]
@@ -30,7 +30,9 @@ fn bad_input_ends_with_one_line_and_no_output_file() {
     write("LOG00001.BBL", b"H Product:Blackbox\n");
     write(
         "old.json",
-        curve.replace("\"version\": 4", "\"version\": 0").as_bytes(),
+        curve
+            .replace(&format!("\"version\": {VERSION}"), "\"version\": 0")
+            .as_bytes(),
     );
     write(
         "odd.json",

@@ -196,7 +196,7 @@ def register(context: Any) -> Any:
     import datafusion
     import pyarrow as pa
 
-    class Accumulator(_States, datafusion.Accumulator):  # type: ignore[misc]
+    class Accumulator(_States, datafusion.Accumulator):
         def state(self) -> list[Any]:
             return [pa.scalar(self.bytes(), pa.binary())]
 

@@ -60,7 +60,10 @@ pub struct CommandLine {
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    // A page has no use for the next two either, which stand first all the same.
+    #[cfg(not(target_family = "wasm"))]
     Measure(measure::Arguments),
+    #[cfg(not(target_family = "wasm"))]
     Merge(merge::Arguments),
     Fit(fit::Arguments),
     Export(export::Arguments),
@@ -99,7 +102,9 @@ impl CommandLine {
     fn run_command(&self) -> Result<(), Failure> {
         let mut output = Wrapped::new(BufWriter::new(io::stdout().lock()));
         match &self.command {
+            #[cfg(not(target_family = "wasm"))]
             Command::Measure(arguments) => measure::run(arguments, &mut output),
+            #[cfg(not(target_family = "wasm"))]
             Command::Merge(arguments) => merge::run(arguments, &mut output),
             Command::Fit(arguments) => fit::run(arguments, &mut output),
             Command::Export(arguments) => export::run(arguments, &mut output),

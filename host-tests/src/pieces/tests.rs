@@ -266,3 +266,129 @@ fn damaged_bytes_are_refused_or_those_of_pieces() {
         }
     }
 }
+
+/// What may happen to a record while it is read.
+#[derive(Clone, Copy)]
+enum Operation {
+    /// So many samples come.
+    Push(usize),
+    /// So many are lost.
+    Lost(usize),
+    /// Another machine goes on.
+    Part,
+    /// What the last machine before this one has comes here.
+    Join,
+    /// The state goes through its bytes.
+    Restore,
+    /// The state is looked at: its curve is computed.
+    Release,
+}
+
+/// A record on its way: the samples so far, and what each machine has of it.
+#[derive(Clone)]
+struct History {
+    next: usize,
+    machines: Vec<Pieces>,
+    stretches: Vec<Range<usize>>,
+}
+
+impl History {
+    fn go_on(&mut self, operation: Operation, counts: &[i32]) {
+        let Some(own) = self.machines.last_mut() else {
+            return;
+        };
+        match operation {
+            Operation::Push(samples) => {
+                let range = self.next..self.next + samples;
+                own.push(range.start as u64, &counts[range.clone()])
+                    .unwrap();
+                self.next = range.end;
+                match self.stretches.last_mut() {
+                    Some(last) if last.end == range.start => last.end = range.end,
+                    _ => self.stretches.push(range),
+                }
+            }
+            Operation::Lost(samples) => self.next += samples,
+            Operation::Part => self.machines.push(pieces()),
+            Operation::Join => {
+                if let Some(other) = self.machines.len().checked_sub(2) {
+                    let other = self.machines.remove(other);
+                    self.machines.last_mut().unwrap().merge(other).unwrap();
+                }
+            }
+            Operation::Restore => *own = Pieces::from_bytes(&bytes(own)).unwrap(),
+            Operation::Release => drop(own.curve("gx", Unit::DegreesPerSecond)),
+        }
+    }
+
+    /// Whether all machines together have the sums of the definition, and the bytes of the record that none cut.
+    fn check(&self, counts: &[i32]) {
+        let (mut all, mut whole) = (pieces(), pieces());
+        for part in &self.machines {
+            all.merge(part.clone()).unwrap();
+        }
+        for stretch in &self.stretches {
+            whole
+                .push(stretch.start as u64, &counts[stretch.clone()])
+                .unwrap();
+        }
+        assert_eq!(bytes(&all), bytes(&whole));
+        for octave in 0..OCTAVES {
+            let sum = |one: (u64, u128), other: (u64, u128)| (one.0 + other.0, one.1 + other.1);
+            let found = all
+                .pieces()
+                .map(|piece| piece.octave(octave))
+                .fold((0, 0), sum);
+            let expected = self
+                .stretches
+                .iter()
+                .map(|stretch| definition(stretch.start as u64, &counts[stretch.clone()], octave));
+            assert_eq!(found, expected.fold((0, 0), sum), "octave {octave}");
+            if found.0 == 0 {
+                break;
+            }
+        }
+    }
+}
+
+/// Checks every history of at most so many further operations, and returns their number.
+fn every(history: &History, operations: usize, counts: &[i32]) -> usize {
+    history.check(counts);
+    if operations == 0 {
+        return 1;
+    }
+    use Operation::{Join, Lost, Part, Push, Release, Restore};
+    let all = [Push(3), Push(70), Lost(5), Part, Join, Restore, Release];
+    let longer = all.map(|operation| {
+        let mut longer = history.clone();
+        longer.go_on(operation, counts);
+        every(&longer, operations - 1, counts)
+    });
+    1 + longer.iter().sum::<usize>()
+}
+
+/// `cargo test -p host-tests --lib every_history -- --include-ignored` also checks those of seven operations.
+#[test]
+fn every_history_has_the_sums_of_the_definition_and_the_bytes_of_the_whole() {
+    histories(5);
+}
+
+#[test]
+#[ignore = "takes a minute: every history of seven operations"]
+fn every_history_of_seven_operations() {
+    histories(7);
+}
+
+fn histories(operations: usize) {
+    let counts = counts(&mut random(4), 7 * 70, 1000);
+    let begin = History {
+        next: 0,
+        machines: vec![pieces()],
+        stretches: Vec::new(),
+    };
+    let number = every(&begin, operations, &counts);
+    println!("{number} histories");
+    let lengths = 0..=operations as u32;
+    let expected: usize = lengths.map(|length| 7_usize.pow(length)).sum();
+    assert_eq!(number, expected);
+}

@@ -19,7 +19,11 @@ function gloss(word, shown = word) {
 const meaningBox = html("div", { id: "meaning", role: "tooltip", hidden: true });
 document.body.append(meaningBox);
 
+/// The word whose meaning was written last.
+let explained = null;
+
 function explain(word) {
+  explained = word;
   meaningBox.replaceChildren(html("strong", {}, word.dataset.word), ` – ${meanings.get(word.dataset.word)}`);
   meaningBox.hidden = false;
   const [at, own] = [word.getBoundingClientRect(), meaningBox.getBoundingClientRect()];
@@ -30,21 +34,31 @@ function explain(word) {
 }
 
 const glossOf = (event) => (event.target instanceof Element ? event.target.closest(".gloss") : null);
-// A finger that rests too long on a word makes no click; it is lifted all the same.
+// Whoever taps a word or reaches it by a key keeps its meaning when the mouse, which lies elsewhere, moves. A finger that rests
+// too long on a word makes no click; it is lifted all the same.
+let isKept = false;
+
+function hideMeaning() {
+  [meaningBox.hidden, isKept] = [true, false];
+}
+
 for (const name of ["mouseover", "focusin", "pointerup", "click"]) {
   document.addEventListener(name, (event) => {
     const word = glossOf(event);
-    if (word) explain(word);
-    else if (name === "click") meaningBox.hidden = true;
+    if (word) {
+      isKept = name !== "mouseover" || (isKept && word === explained);
+      explain(word);
+    } else if (name === "click") hideMeaning();
   });
 }
-for (const name of ["mouseout", "focusout"]) {
-  document.addEventListener(name, (event) => {
-    if (glossOf(event)) meaningBox.hidden = true;
-  });
-}
+document.addEventListener("mouseout", (event) => {
+  if (glossOf(event) && !isKept) hideMeaning();
+});
+document.addEventListener("focusout", (event) => {
+  if (glossOf(event)) hideMeaning();
+});
 // It stands beside its word, which moves then.
-window.addEventListener("resize", () => { meaningBox.hidden = true; });
+window.addEventListener("resize", hideMeaning);
 document.addEventListener("keydown", (event) => {
-  if (event.key === "Escape") meaningBox.hidden = true;
+  if (event.key === "Escape") hideMeaning();
 });

@@ -91,9 +91,11 @@ fn a_dropped_log_gives_what_the_command_line_gives_and_nothing_leaves_the_page()
             let expected = output(folder, &[&[name, input], options].concat());
             assert!(printed == expected, "{input} {name} {options:?}");
         }
-        ask(&mut browser, "report", "");
+        // A page carries no other.
+        ask(&mut browser, "report", "--plain");
         let shown = browser.value("byId('report').srcdoc");
-        output(folder, &["report", input, "--output", "report.html"]);
+        let plain = ["report", input, "--plain", "--output", "report.html"];
+        output(folder, &plain);
         let expected = fs::read_to_string(folder.join("report.html")).unwrap();
         assert!(shown == expected, "{input}");
         let framed = browser.value("byId('report').hidden");

@@ -368,7 +368,7 @@ fn a_covariate_is_a_step_and_the_settings_reproduce_the_page() {
         "{finding}"
     );
     let settings = browser.text(".settings");
-    let command = "allanite report log.csv --covariates temp_C --output report.html";
+    let command = "allanite report log.csv --covariates temp_C --plain --output report.html";
     for part in [command, env!("CARGO_PKG_VERSION"), "1 %", "p = 0.01"] {
         assert!(settings.contains(part), "{part}: {settings}");
     }

@@ -99,7 +99,7 @@ fn bad_input_ends_with_one_line_and_no_output_file() {
     for (input, expected) in [
         (
             "old.json",
-            "old.json: the format has version 0, but this program reads versions 1 to 4; ",
+            "old.json: the format has version 0, but this program reads versions 1 to 5; ",
         ),
         ("odd.json", "odd.json: axis \"gx\": octave m = 3: "),
         ("none.json", "none.json: no such file; "),

@@ -67,7 +67,7 @@ function drawStairs(fits, width) {
   const label = `χ² ${tenth(last.chi2)} ${fits.length > 1 ? fallInWords(fits[0].chi2, last.chi2) : ""}`.trim();
   const at = y(last.chi2 ?? 1);
   svg.append(draw("text", { x: right, y: at + 18 < bottom ? at + 18 : at - 7, "text-anchor": "end", class: "stair-label" }, label));
-  svg.append(draw("text", { x: left, y: height - 6, class: "pale" }, `models so far: ${fits.length}`),
+  svg.append(draw("text", { x: left, y: height - 6, class: "pale" }, `models: ${fits.length}`),
     draw("text", { x: right, y: height - 6, "text-anchor": "end", class: "pale" }, `dashed: ${last.dof} degrees of freedom`));
   return svg;
 }

@@ -79,8 +79,12 @@ enum Task {
         #[arg(long, default_value_t = 64)]
         seeds: u32,
     },
-    /// Check the licences, versions and sources of all crates with cargo-deny, which is installed if missing.
-    Deny,
+    /// Check the licences, versions, sources and known vulnerabilities of all crates with cargo-deny, which is installed if missing.
+    Deny {
+        /// A clone of the database of vulnerabilities, for a machine that does not reach it.
+        #[arg(long, value_name = "FOLDER")]
+        database: Option<PathBuf>,
+    },
     /// Check that the library builds with the oldest versions that it allows. This needs rustup's nightly.
     MinimalVersions,
     /// Build an image twice from nothing, in different folders, and compare the bytes.
@@ -174,7 +178,7 @@ impl CommandLine {
                 seed,
             } => fuzz::fuzz(&target, seconds, seed),
             Task::Miri { seeds } => miri::miri(seeds),
-            Task::Deny => supply_chain::deny(),
+            Task::Deny { database } => supply_chain::deny(database.as_deref()),
             Task::MinimalVersions => supply_chain::minimal_versions(),
             Task::Reproduce => supply_chain::reproduce(),
             Task::Bench {

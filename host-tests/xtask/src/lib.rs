@@ -5,6 +5,8 @@ pub mod firmware;
 mod bench;
 mod c;
 pub mod cost;
+#[cfg(feature = "dist")]
+mod dist;
 mod fuzz;
 mod miri;
 pub mod page;
@@ -127,6 +129,17 @@ enum Task {
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         arguments: Vec<String>,
     },
+    /// Pack the program for others to install: a static program, its completions, its manual, a package for Debian, an
+    /// archive, the list of its parts (CycloneDX), and checksums. SOURCE_DATE_EPOCH, or else the last commit, is their time.
+    #[cfg(feature = "dist")]
+    Dist {
+        /// Build everything once more from nothing, in another folder, and compare the bytes.
+        #[arg(long)]
+        check: bool,
+        /// Folder to write to.
+        #[arg(long, value_name = "FOLDER", default_value = "target/dist")]
+        output: PathBuf,
+    },
     /// Ask the command line everything about some 70 records, and compare the answers with those of an earlier run: for
     /// changes that should change no result.
     Results {
@@ -196,6 +209,8 @@ impl CommandLine {
             }
             Task::Page { output } => page::page(&output),
             Task::Python { arguments } => python::run(&arguments),
+            #[cfg(feature = "dist")]
+            Task::Dist { check, output } => dist::run(&output, check),
             Task::Results {
                 folder,
                 against,

@@ -19,8 +19,8 @@ const RULES: &str = "host-tests/deny.toml";
 /// The image that uses every part of the library.
 const IMAGE: &str = "product";
 
-/// Where the debug information of an image says that the sources lie.
-const SOURCES: &str = "/allanite";
+/// Where an image and a program that others install say that the sources lie.
+pub(crate) const SOURCES: &str = "/allanite";
 
 /// Where cargo-deny takes the known vulnerabilities from.
 const VULNERABILITIES: &str = "https://github.com/RustSec/advisory-db";

@@ -1,6 +1,6 @@
 //! Snapshots in flash.
 
-use super::{envelope::CRC, error::Error};
+use super::{envelope::CRC, error::Error, page_ring::PageRing, store_error::StoreError};
 use crate::record::octave::Accumulator;
 use core::ops::Range;
 use embedded_storage_async::nor_flash::NorFlash;
@@ -21,6 +21,16 @@ use sequential_storage::{
 /// A snapshot that is longer than [`PIECE`](Self::PIECE), a third of a page, is stored in pieces, beside those of the
 /// snapshot before it: the last thing that is written tells which of the two counts. So the range must have as many
 /// pages as [`pages`](Self::pages) says.
+///
+/// # Damage
+///
+/// Flipped bits, pages that were erased or overwritten by something else, and bytes that look erased and are not: the store
+/// puts its pages in order before it reads or writes, and each save reads back what it wrote. What was not damaged stays,
+/// also the newest snapshots under other numbers. What was damaged is lost: the snapshot before it is then found, if the
+/// store still has it, or none. Of a page whose words were erased in the middle, what lies behind them is lost too, and if
+/// the ends of all pages are damaged, so may be the order of the pages, and the snapshots of a page that is then taken for an
+/// erased one. Only if a save still cannot read back what it wrote after it was repeated
+/// three times, it erases the whole range and is repeated once more. An error of the driver never leads to that.
 ///
 /// # Example
 ///
@@ -57,6 +67,9 @@ const HEAD: u8 = 255;
 /// The largest number of pieces.
 const PIECES: usize = 100;
 
+/// How often a store repairs its pages for one snapshot before it erases all of them.
+const REPAIRS: u8 = 3;
+
 /// The first byte of a head: the snapshot follows, or its length and its place.
 const WHOLE: u8 = 0;
 const IN_PIECES: u8 = 1;
@@ -68,91 +81,13 @@ const BEFORE: usize = size_of::<Key>() + 1;
 /// of all of them, because damage may bring an older piece back.
 const HEAD_BYTES: usize = 10;
 
-/// The reason why a snapshot was not stored or not read.
-#[derive(Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[non_exhaustive]
-pub enum StoreError<E> {
-    /// The range does not consist of at least two whole pages within the flash.
-    InvalidRange,
-    /// The driver of the flash failed.
-    Flash(E),
-    /// The flash was damaged, or something else wrote into the range.
-    Damaged,
-    /// The range has too few pages.
-    Full,
-    /// The snapshot has more than a hundred pieces.
-    TooLong {
-        /// Its length in bytes.
-        found: usize,
-        /// The largest length.
-        longest: usize,
-    },
-    /// The buffer is too small.
-    BufferTooSmall {
-        /// The number of bytes that it must have.
-        needed: usize,
-    },
-    /// The snapshot could not be written or restored.
-    Snapshot(Error),
-}
-
-impl<E> From<sequential_storage::Error<E>> for StoreError<E> {
-    fn from(error: sequential_storage::Error<E>) -> Self {
-        use sequential_storage::Error as Map;
-        match error {
-            Map::Storage { value, .. } => Self::Flash(value),
-            Map::FullStorage | Map::ItemTooBig => Self::Full,
-            Map::BufferTooSmall(needed) => Self::BufferTooSmall { needed },
-            Map::SerializationError(SerializationError::BufferTooSmall) => {
-                Self::BufferTooSmall { needed: 0 }
-            }
-            _ => Self::Damaged,
-        }
-    }
-}
-
-impl<E: core::fmt::Debug> core::fmt::Display for StoreError<E> {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        match self {
-            Self::InvalidRange => write!(
-                f,
-                "the range does not suit the flash: give two whole pages of it or more"
-            ),
-            Self::Flash(error) => write!(
-                f,
-                "the flash reports {error:?}: check the driver and the range"
-            ),
-            Self::Damaged => write!(
-                f,
-                "the flash is damaged, or something else writes into the range: reset the store, which erases it"
-            ),
-            Self::Full => write!(
-                f,
-                "the range has too few pages: give as many as `SnapshotStore::pages` says"
-            ),
-            Self::TooLong { found, longest } => write!(
-                f,
-                "a snapshot of {found} bytes is longer than {longest}: leave out a part, or use a flash of larger pages"
-            ),
-            Self::BufferTooSmall { needed } => write!(
-                f,
-                "the buffer is too small: give {needed} bytes or more, or as many as `SnapshotStore::buffer` says"
-            ),
-            Self::Snapshot(error) => error.fmt(f),
-        }
-    }
-}
-
-impl<E: core::fmt::Debug> core::error::Error for StoreError<E> {}
-
 /// A snapshot as a function writes it, behind the first byte of a head.
-struct Stored<W>(W);
+#[derive(Clone, Copy)]
+struct Stored<'w>(&'w Write<'w>);
 
-impl<'d, W> Value<'d> for Stored<W>
-where
-    W: for<'b> Fn(&'b mut [u8]) -> Result<&'b [u8], Error>,
-{
+type Write<'w> = dyn for<'b> Fn(&'b mut [u8]) -> Result<&'b [u8], Error> + 'w;
+
+impl<'d> Value<'d> for Stored<'_> {
     fn serialize_into(&self, buffer: &mut [u8]) -> Result<usize, SerializationError> {
         let (first, rest) = buffer
             .split_first_mut()
@@ -167,6 +102,27 @@ where
     fn deserialize_from(_: &'d [u8]) -> Result<(Self, usize), SerializationError> {
         // The bytes are read instead, and restored from there.
         Err(SerializationError::InvalidFormat)
+    }
+}
+
+/// What tells one snapshot from another. A checksum of all bytes would be the same for all, because they end with theirs.
+#[derive(Clone, Copy, PartialEq, Eq)]
+struct Fingerprint {
+    length: usize,
+    front: u32,
+    end: [u8; 4],
+}
+
+impl Fingerprint {
+    fn of(bytes: &[u8]) -> Self {
+        let length = bytes.len();
+        let (front, end) = bytes.split_last_chunk().unwrap_or((bytes, &[0; 4]));
+        let front = CRC.checksum(front);
+        Self {
+            length,
+            front,
+            end: *end,
+        }
     }
 }
 
@@ -244,25 +200,79 @@ impl<F: NorFlash> SnapshotStore<F> {
 
     /// Stores the snapshot that `write` puts into a buffer under a number. For [`Axes`](crate::Axes), write
     /// `store.save_with(0, |buffer| axes.snapshot(&tests, buffer), &mut buffer)`. The size of the buffer is
-    /// [`buffer`](Self::buffer)` (longest snapshot)`. A [`Certificate`](super::Certificate) is stored in the same way,
+    /// [`buffer`](Self::buffer)` (longest snapshot)`. What was stored is read back. A [`Certificate`](super::Certificate) is stored in the same way,
     /// under a number of its own: `store.save_with(9, |buffer| certificate.encode(buffer), &mut buffer)`.
     ///
     /// # Errors
     /// [`StoreError::Flash`], [`StoreError::Damaged`], [`StoreError::Full`], [`StoreError::TooLong`],
     /// [`StoreError::BufferTooSmall`], and [`StoreError::Snapshot`] if `write` fails. The snapshot stored before is then still
-    /// there.
+    /// there, except after [`StoreError::Damaged`].
     pub async fn save_with(
         &mut self,
         number: u8,
         write: impl for<'b> Fn(&'b mut [u8]) -> Result<&'b [u8], Error>,
         buffer: &mut [u8],
     ) -> Result<(), StoreError<F::Error>> {
-        let length = write(buffer).map_err(StoreError::Snapshot)?.len();
-        if length <= Self::PIECE {
-            let (key, stored) = ([number, HEAD], Stored(write));
-            self.map.store_item(buffer, &key, &stored).await?;
-            return Ok(());
+        // One function for every `write`.
+        self.save_stored(number, Stored(&write), buffer).await
+    }
+
+    async fn save_stored(
+        &mut self,
+        number: u8,
+        snapshot: Stored<'_>,
+        buffer: &mut [u8],
+    ) -> Result<(), StoreError<F::Error>> {
+        let mut attempts = 0;
+        loop {
+            let written = Fingerprint::of((snapshot.0)(buffer).map_err(StoreError::Snapshot)?);
+            let stored = self.store(number, snapshot, written, buffer).await;
+            let error = match stored {
+                Err(error @ (StoreError::Damaged | StoreError::Full | StoreError::Flash(_))) => {
+                    error
+                }
+                other => return other,
+            };
+            match (attempts, &error) {
+                (0, _) | (1..REPAIRS, StoreError::Damaged | StoreError::Flash(_)) => {
+                    self.ring().turn().await.map_err(StoreError::Flash)?;
+                }
+                (REPAIRS, StoreError::Damaged) => self.reset().await?,
+                _ => return Err(error),
+            }
+            attempts += 1;
         }
+    }
+
+    /// Stores a snapshot, and reads it back.
+    async fn store(
+        &mut self,
+        number: u8,
+        snapshot: Stored<'_>,
+        written: Fingerprint,
+        buffer: &mut [u8],
+    ) -> Result<(), StoreError<F::Error>> {
+        self.ring().prepare().await.map_err(StoreError::Flash)?;
+        if written.length <= Self::PIECE {
+            self.map
+                .store_item(buffer, &[number, HEAD], &snapshot)
+                .await?;
+        } else {
+            self.store_pieces(number, written.length, buffer).await?;
+        }
+        match self.load_bytes(number, buffer).await? {
+            Some(bytes) if Fingerprint::of(bytes) == written => Ok(()),
+            _ => Err(StoreError::Damaged),
+        }
+    }
+
+    /// Stores the snapshot at the start of a buffer in pieces.
+    async fn store_pieces(
+        &mut self,
+        number: u8,
+        length: usize,
+        buffer: &mut [u8],
+    ) -> Result<(), StoreError<F::Error>> {
         let longest = Self::PIECE.saturating_mul(PIECES);
         if length > longest {
             let found = length;
@@ -290,6 +300,11 @@ impl<F: NorFlash> SnapshotStore<F> {
             .store_item(beside, &[number, HEAD], &&head[..])
             .await?;
         Ok(())
+    }
+
+    fn ring(&mut self) -> PageRing<'_, F> {
+        let range = self.map.flash_range();
+        PageRing::new(self.map.flash(), range)
     }
 
     /// Reads a head into a buffer.
@@ -331,6 +346,7 @@ impl<F: NorFlash> SnapshotStore<F> {
         number: u8,
         buffer: &'b mut [u8],
     ) -> Result<Option<&'b [u8]>, StoreError<F::Error>> {
+        self.ring().order().await.map_err(StoreError::Flash)?;
         let (place, length, checksum) = match self.head(number, buffer).await? {
             None => return Ok(None),
             Some(Head::Whole { start, length }) => {
@@ -404,8 +420,7 @@ impl<F: NorFlash> SnapshotStore<F> {
         Ok(Some(restored))
     }
 
-    /// Erases the whole range, and all that is stored in it: for a flash that is [damaged](StoreError::Damaged). What can
-    /// still be [loaded](Self::load_bytes), such as a certificate, is to be read before and saved afterwards.
+    /// Erases the whole range, and all that is stored in it, for a new start. [Damage](Self#damage) does not need it.
     ///
     /// # Errors
     /// [`StoreError::Flash`].

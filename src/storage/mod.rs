@@ -8,7 +8,11 @@ mod error;
 #[cfg(feature = "flash")]
 mod flash;
 mod interval;
+#[cfg(feature = "flash")]
+mod page_ring;
 pub mod snapshot;
+#[cfg(feature = "flash")]
+mod store_error;
 
 pub use certificate::{
     AxisCertificate, Certificate, CertifiedBand, CertifiedEvent, CertifiedLimit, CertifiedShape,
@@ -17,6 +21,8 @@ pub use certificate::{
 };
 pub use error::Error;
 #[cfg(feature = "flash")]
-pub use flash::{SnapshotStore, StoreError};
+pub use flash::SnapshotStore;
 pub use interval::SnapshotInterval;
 pub use snapshot::Snapshot;
+#[cfg(feature = "flash")]
+pub use store_error::StoreError;

@@ -5,6 +5,8 @@ pub mod firmware;
 mod bench;
 mod c;
 pub mod cost;
+#[cfg(feature = "dist")]
+mod dist;
 mod fuzz;
 mod miri;
 pub mod page;
@@ -79,8 +81,12 @@ enum Task {
         #[arg(long, default_value_t = 64)]
         seeds: u32,
     },
-    /// Check the licences, versions and sources of all crates with cargo-deny, which is installed if missing.
-    Deny,
+    /// Check the licences, versions, sources and known vulnerabilities of all crates with cargo-deny, which is installed if missing.
+    Deny {
+        /// A clone of the database of vulnerabilities, for a machine that does not reach it.
+        #[arg(long, value_name = "FOLDER")]
+        database: Option<PathBuf>,
+    },
     /// Check that the library builds with the oldest versions that it allows. This needs rustup's nightly.
     MinimalVersions,
     /// Build an image twice from nothing, in different folders, and compare the bytes.
@@ -122,6 +128,17 @@ enum Task {
         /// Arguments for pytest, such as `-k arrow`.
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         arguments: Vec<String>,
+    },
+    /// Pack the program for others to install: a static program, its completions, its manual, a package for Debian, an
+    /// archive, the list of its parts (CycloneDX), and checksums. SOURCE_DATE_EPOCH, or else the last commit, is their time.
+    #[cfg(feature = "dist")]
+    Dist {
+        /// Build everything once more from nothing, in another folder, and compare the bytes.
+        #[arg(long)]
+        check: bool,
+        /// Folder to write to.
+        #[arg(long, value_name = "FOLDER", default_value = "target/dist")]
+        output: PathBuf,
     },
     /// Ask the command line everything about some 70 records, and compare the answers with those of an earlier run: for
     /// changes that should change no result.
@@ -174,7 +191,7 @@ impl CommandLine {
                 seed,
             } => fuzz::fuzz(&target, seconds, seed),
             Task::Miri { seeds } => miri::miri(seeds),
-            Task::Deny => supply_chain::deny(),
+            Task::Deny { database } => supply_chain::deny(database.as_deref()),
             Task::MinimalVersions => supply_chain::minimal_versions(),
             Task::Reproduce => supply_chain::reproduce(),
             Task::Bench {
@@ -192,6 +209,8 @@ impl CommandLine {
             }
             Task::Page { output } => page::page(&output),
             Task::Python { arguments } => python::run(&arguments),
+            #[cfg(feature = "dist")]
+            Task::Dist { check, output } => dist::run(&output, check),
             Task::Results {
                 folder,
                 against,

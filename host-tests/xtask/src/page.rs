@@ -4,6 +4,7 @@
 use crate::{
     firmware::{cargo, target_directory, workspace},
     step::step,
+    supply_chain::{SOURCES, cargo_home},
 };
 use anyhow::{Context as _, Result};
 use base64::{Engine as _, prelude::BASE64_STANDARD};
@@ -61,20 +62,34 @@ pub fn compiler() -> Result<()> {
 /// When rustup cannot add the target, a file cannot be read or written, or the program does not build.
 pub fn page(output: &Path) -> Result<()> {
     compiler()?;
-    let built = target_directory().join("page");
+    build(workspace(), &target_directory().join("page"), output)
+}
+
+/// Builds the page from the sources in a folder.
+///
+/// # Errors
+/// Those of [`page`].
+pub(crate) fn build(root: &Path, built: &Path, output: &Path) -> Result<()> {
+    let home = cargo_home()?;
+    let names = [(root, SOURCES), (&*home, "/cargo")];
+    let mut flags = names
+        .map(|(path, name)| format!("--remap-path-prefix={}={name}", path.display()))
+        .to_vec();
+    // What only commands of a workstation use is left out of the page.
+    flags.push("-Adead_code".to_owned());
     step(
         "the program for the page",
         cargo()
+            .current_dir(root)
             .args(["build", "--profile", "page", "--target", TARGET])
             .args(["--package", "host-tests", "--no-default-features"])
             .args(["--bin", "allanite", "--target-dir"])
-            .arg(&built)
-            // What only commands of a workstation use is left out of the page.
-            .env("RUSTFLAGS", "-A dead_code"),
+            .arg(built)
+            .env("CARGO_ENCODED_RUSTFLAGS", flags.join("\x1f")),
     )?;
     let program = built.join(TARGET).join("page/allanite.wasm");
     let packed = packed(&program)?;
-    let folder = workspace().join("host-tests");
+    let folder = root.join("host-tests");
     let joined = |names: &[&str]| {
         let texts = names.iter().map(|name| read(&folder.join(name)));
         anyhow::Ok(texts.collect::<Result<Vec<_>>>()?.join("\n"))

@@ -3,7 +3,7 @@
 
 use crate::{
     firmware::{CORTEX_M4F, Core, Toolchain, cargo, workspace},
-    step::{run, step},
+    step::step,
 };
 use anyhow::{Context as _, Result, bail, ensure};
 use std::{
@@ -19,34 +19,63 @@ const RULES: &str = "host-tests/deny.toml";
 /// The image that uses every part of the library.
 const IMAGE: &str = "product";
 
-/// Where the debug information of an image says that the sources lie.
-const SOURCES: &str = "/allanite";
+/// Where an image and a program that others install say that the sources lie.
+pub(crate) const SOURCES: &str = "/allanite";
 
-/// Checks licences, duplicates, sources and, if their database can be reached, known vulnerabilities.
-pub(crate) fn deny() -> Result<()> {
+/// Where cargo-deny takes the known vulnerabilities from.
+const VULNERABILITIES: &str = "https://github.com/RustSec/advisory-db";
+
+/// Checks licences, duplicates, sources and known vulnerabilities. These come from a clone of their database in a folder, or, if
+/// none is named and it can be reached, from the database itself.
+pub(crate) fn deny(database: Option<&Path>) -> Result<()> {
+    if let Some(folder) = database {
+        ensure!(
+            folder.join("crates").is_dir() && folder.join(".git").exists(),
+            "{} is no clone of the database of vulnerabilities: clone {VULNERABILITIES}",
+            folder.display()
+        );
+    }
     if !succeeds(cargo().args(["deny", "--version"])) {
         step(
             "installing cargo-deny",
             cargo().args(["install", "--locked", "cargo-deny"]),
         )?;
     }
-    let check = |offline: bool, what: &[&str]| {
+    let check = |what: &[&str]| {
         let mut command = cargo();
-        command.arg("deny").args(offline.then_some("--offline"));
-        command.args(["--workspace", "--config", RULES, "check"]);
-        command.args(what);
+        command.args(["deny", "--offline", "--workspace", "--config", RULES]);
+        command.arg("check").args(what);
         command
     };
+    // The check reads every crate, also those of other systems.
+    step("every crate", cargo().args(["fetch", "--locked"]))?;
     let heading = "licences, duplicates and sources";
-    step(heading, &mut check(true, &["licenses", "bans", "sources"]))?;
-    let fetched = run(cargo().args(["deny", "--config", RULES, "fetch", "db"]));
-    if let Err(error) = fetched {
-        println!(
-            "\nThe known vulnerabilities are not checked: {error:#}. Connect to their database's host."
+    step(heading, &mut check(&["licenses", "bans", "sources"]))?;
+    let mut fetch = cargo();
+    fetch.args(["deny", "--config", RULES, "fetch", "db"]);
+    if let Some(folder) = database {
+        // It is cloned from the folder instead.
+        let folder = fs::canonicalize(folder)?;
+        fetch.env("GIT_CONFIG_COUNT", "1");
+        fetch.env(
+            "GIT_CONFIG_KEY_0",
+            format!("url.file://{}.insteadOf", folder.display()),
         );
+        fetch.env("GIT_CONFIG_VALUE_0", VULNERABILITIES);
+    }
+    if !succeeds(&mut fetch) {
+        match database {
+            Some(folder) => bail!(
+                "the vulnerabilities in {} cannot be read: it must be a clone with the branch main",
+                folder.display()
+            ),
+            None => println!(
+                "\nThe known vulnerabilities are not checked, because their database cannot be reached: connect, or name a clone with --database."
+            ),
+        }
         return Ok(());
     }
-    step("known vulnerabilities", &mut check(true, &["advisories"]))
+    step("known vulnerabilities", &mut check(&["advisories"]))
 }
 
 /// Builds the library with the oldest versions that its `Cargo.toml` allows.
@@ -92,13 +121,13 @@ pub(crate) fn reproduce() -> Result<()> {
 }
 
 /// The files that git knows, as they are now, in a folder of their own.
-struct Copy {
-    path: PathBuf,
+pub(crate) struct Copy {
+    pub(crate) path: PathBuf,
     _folder: TempDir,
 }
 
 impl Copy {
-    fn new(name: &str) -> Result<Self> {
+    pub(crate) fn new(name: &str) -> Result<Self> {
         let folder = TempDir::new()?;
         let path = folder.path().join(name);
         let mut list = Command::new("git");
@@ -164,7 +193,7 @@ fn copy(from: &Path, to: &Path) -> std::io::Result<()> {
 }
 
 /// The folder where cargo keeps the sources of crates.
-fn cargo_home() -> Result<PathBuf> {
+pub(crate) fn cargo_home() -> Result<PathBuf> {
     let set = std::env::var_os("CARGO_HOME").map(PathBuf::from);
     let default = || std::env::home_dir().map(|home| home.join(".cargo"));
     match set.or_else(default) {

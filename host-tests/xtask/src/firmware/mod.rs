@@ -22,8 +22,12 @@ pub use toolchain::{Toolchain, Way, target_directory};
 /// The remedy at the end of every failure to build or run an image.
 pub const REMEDY: &str = "`cargo xtask setup` installs what is missing";
 
-/// The folder of the workspace.
+/// The folder of the workspace. A program that others install has another name for it, from `cargo xtask dist`, and does not tell
+/// where it was built.
 pub fn workspace() -> &'static std::path::Path {
+    if let Some(named) = option_env!("ALLANITE_SOURCES") {
+        return std::path::Path::new(named);
+    }
     let here = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
     here.ancestors().nth(2).unwrap_or(here)
 }

@@ -3,7 +3,7 @@
 use crate::Gyro;
 use allanite::storage::{Certificate, SnapshotStore, StoreError};
 use core::ops::Range;
-use defmt::{error, info, warn};
+use defmt::{info, warn};
 use embassy_embedded_hal::adapter::BlockingAsync;
 use embassy_nrf::nvmc::{FLASH_SIZE, Nvmc};
 use static_cell::ConstStaticCell;
@@ -67,13 +67,10 @@ impl Store {
                     error
                 ),
             },
-            Err(error) => {
-                warn!(
-                    "the stored snapshot cannot be read, the record begins: {}",
-                    error
-                );
-                self.erase().await;
-            }
+            Err(error) => warn!(
+                "the stored snapshot cannot be read, the record begins: {}",
+                error
+            ),
         }
     }
 
@@ -84,7 +81,7 @@ impl Store {
                 .save_with(SNAPSHOT, |buffer| gyro.snapshot(&[], buffer), self.buffer);
         match saved.await {
             Ok(()) => info!("{} samples are stored", gyro.samples()),
-            Err(error) => self.failed(error).await,
+            Err(error) => failed(error),
         }
     }
 
@@ -97,21 +94,12 @@ impl Store {
         );
         match saved.await {
             Ok(()) => info!("the certificate is stored"),
-            Err(error) => self.failed(error).await,
+            Err(error) => failed(error),
         }
     }
+}
 
-    async fn failed(&mut self, error: StoreError<embassy_nrf::nvmc::Error>) {
-        warn!("nothing was stored, check the flash: {}", error);
-        if error == StoreError::Damaged {
-            self.erase().await;
-        }
-    }
-
-    /// Erases a range that is damaged, so that the next snapshot has room.
-    async fn erase(&mut self) {
-        if let Err(error) = self.snapshots.reset().await {
-            error!("the range of the snapshots cannot be erased: {}", error);
-        }
-    }
+/// The next save puts a damaged range in order by itself.
+fn failed(error: StoreError<embassy_nrf::nvmc::Error>) {
+    warn!("nothing was stored, check the flash: {}", error);
 }

@@ -17,6 +17,7 @@ pub mod program;
 pub mod quantile;
 pub mod regular_file;
 pub mod simulate;
+pub mod sizes;
 #[cfg(feature = "study")]
 pub mod study;
 pub mod unit;

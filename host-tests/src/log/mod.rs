@@ -183,19 +183,7 @@ pub use spectrogram::Spectrogram;
 #[cfg(feature = "tables")]
 pub use tables::apart::answer as answer_about_table;
 
-/// The number of octaves that the host accumulates. They cannot overflow, and they suffice for
-/// records of years.
-pub const OCTAVES: usize = 30;
-
-/// The number of blocks in a segment of the spectrum that the host accumulates. It is that of a device, so that both
-/// see the same bins.
-pub const SEGMENT: usize = 64;
-
-/// The number of levels of the spectrum.
-pub const LEVELS: usize = 7;
-
-/// The number of bins that there is room for: those of all levels.
-pub const BINS: usize = 196;
+pub use crate::sizes::{BINS, LEVELS, OCTAVES, SEGMENT};
 
 /// The spectrum of an axis as the host accumulates it.
 pub type SpectrumSums = SpectrumAccumulator<SEGMENT, LEVELS>;

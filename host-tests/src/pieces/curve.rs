@@ -7,7 +7,7 @@ use super::{
 use crate::{
     curve_file::{AxisCurve, ShortOctave, SpectrumLevel, SpectrumLevels},
     failure::Failure,
-    log::{self, LEVELS, OCTAVES, SEGMENT},
+    sizes::{self, LEVELS, OCTAVES, SEGMENT},
     unit::Unit,
 };
 use allanite::{octave::Bridged, spectrum::Spectrum};
@@ -101,7 +101,7 @@ impl Pieces {
             segments += own;
             powers.join(sums);
         }
-        if segments < u64::from(Spectrum::<{ log::BINS }>::SPARSE_SEGMENTS) {
+        if segments < u64::from(Spectrum::<{ sizes::BINS }>::SPARSE_SEGMENTS) {
             return None;
         }
         let block = 1_u32 << (3 * level);

@@ -5,7 +5,7 @@ use super::{
     powers::{Powers, segments},
     squares::{Angle, NEAR, Near, difference},
 };
-use crate::log::{LEVELS, OCTAVES};
+use crate::sizes::{LEVELS, OCTAVES};
 use serde::{Deserialize, Serialize};
 use std::{array::from_fn, ops::Range};
 

@@ -4,7 +4,7 @@ use super::{
     edges::EDGE,
     exact_sum::{ExactSum, Places},
 };
-use crate::log::SEGMENT;
+use crate::sizes::SEGMENT;
 use allanite::spectrum::segment_powers;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;

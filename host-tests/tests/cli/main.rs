@@ -34,6 +34,7 @@ mod export_tables;
 mod faults;
 mod formats;
 mod help;
+mod injected;
 mod known_filter;
 mod limits;
 mod log;

@@ -14,8 +14,9 @@ pub use levels::{SpectrumLevel, SpectrumLevels};
 use crate::{
     failure::{Failure, Place, brief, one_line, quoted},
     log::{self, BINS, OCTAVES},
-    pieces::{self, Pieces},
+    pieces::Pieces,
     regular_file,
+    sizes::MOST_SAMPLES,
     unit::Unit,
 };
 use allanite::{Curve, Scale, course::CosineTransform, octave::Bridged, spectrum::Spectrum};
@@ -37,9 +38,6 @@ const MOST_AXES: usize = log::MOST_AXES;
 
 /// Longest name of an axis, in bytes.
 const LONGEST_NAME: usize = 1 << 12;
-
-/// Largest number of samples.
-const MOST_SAMPLES: u64 = pieces::MOST_SAMPLES;
 
 /// The curves of a log's axes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -13,3 +13,6 @@ pub const LEVELS: usize = 7;
 
 /// The number of bins that there is room for: those of all levels.
 pub const BINS: usize = 196;
+
+/// The largest number of samples of a record, and the largest number that a sample can have: a thousand years at 33 kHz.
+pub const MOST_SAMPLES: u64 = 1 << 50;

@@ -26,13 +26,10 @@ mod tests;
 
 pub use gathered::Gathered;
 
-use crate::failure::Failure;
+use crate::{failure::Failure, sizes::MOST_SAMPLES};
 use piece::Piece;
 use serde::{Deserialize, Serialize};
 use std::{collections::BTreeMap, ops::Range};
-
-/// The largest number that a sample can have: a thousand years at 33 kHz.
-pub const MOST_SAMPLES: u64 = 1 << 50;
 
 /// The number of samples whose angles are in memory at once.
 const CHUNK: usize = 1 << 16;

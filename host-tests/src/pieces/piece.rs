@@ -5,7 +5,7 @@ use super::{
     powers::{Powers, segments},
     squares::{Angle, NEAR, Near, difference},
 };
-use crate::sizes::{LEVELS, OCTAVES};
+use crate::sizes::{LEVELS, MOST_SAMPLES, OCTAVES};
 use serde::{Deserialize, Serialize};
 use std::{array::from_fn, ops::Range};
 
@@ -195,7 +195,7 @@ impl Piece {
             differences > 0 || sum == 0
         });
         self.start < self.end
-            && self.end <= super::MOST_SAMPLES
+            && self.end <= MOST_SAMPLES
             && edges.all(|is_possible| is_possible)
             && levels.all(|is_possible| is_possible)
             && octaves.all(|is_possible| is_possible)

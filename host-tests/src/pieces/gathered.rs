@@ -58,7 +58,7 @@ impl Gathered {
             let mut pairs = numbers.windows(2);
             numbers.len() == counts.len()
                 && first.checked_add(counts.len() as u64).is_some()
-                && pairs.all(|pair| pair[0] + 1 == pair[1])
+                && pairs.all(|pair| pair[1].checked_sub(pair[0]) == Some(1))
         };
         match numbers.first().filter(|first| is_run(first)) {
             Some(&first) => self.push(first, counts),

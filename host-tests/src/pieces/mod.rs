@@ -165,7 +165,7 @@ impl Pieces {
         }
         let mut all = self.without_samples();
         let mut rest = counts;
-        for run in numbers.chunk_by(|&one, &next| one + 1 == next) {
+        for run in numbers.chunk_by(|&one, &next| next - one == 1) {
             let (taken, after) = rest.split_at(run.len());
             all.push(run[0], taken)?;
             rest = after;

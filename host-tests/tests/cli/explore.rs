@@ -2,7 +2,7 @@
 
 use crate::browser::Browser;
 use crate::whole_page::{self, explored, settle};
-use host_tests::program::{ADIS16405, json, output};
+use host_tests::program::{ADIS16405, json, output, refusal};
 use serde_json::{Value, json};
 use std::{
     fs,
@@ -363,6 +363,21 @@ fn a_report_carries_the_program_with_which_its_reader_tries_an_effect() {
         "{said}"
     );
     assert!(page.len() < plain.len() + 1_700_000, "{}", page.len());
+
+    let both = [
+        "report",
+        ADIS16405,
+        "--max-effects",
+        "1",
+        "--output",
+        "x.html",
+    ];
+    let page_option = ["--page", empty.to_str().unwrap()];
+    let refused = refusal(folder.path(), &[&both[..], &page_option].concat());
+    assert!(
+        refused.contains("--max-effects; omit one of them"),
+        "{refused}"
+    );
 
     // The report is what it was, and its link opens the other state of the page.
     let mut browser = Browser::start();

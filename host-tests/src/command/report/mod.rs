@@ -44,6 +44,12 @@ pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), 
     let mut file = OutputFile::create(&arguments.output, [&*arguments.diagnosis.input])?;
     // What a reader tries begins with the five terms.
     let can_carry = !arguments.plain && arguments.diagnosis.is_plain();
+    if arguments.page.is_some() && !can_carry {
+        return Err(Failure::option(
+            "on the page of --page, effects are tried without --filter and --max-effects",
+            "omit one of them",
+        ));
+    }
     let empty = can_carry.then(|| explore::empty_page(arguments.page.as_deref()));
     let (carried, diagnosed) = match empty.transpose()?.flatten() {
         Some(empty) => {

@@ -81,4 +81,15 @@ impl Gathered {
         self.work();
         &mut self.pieces
     }
+
+    /// The pieces of all samples, which take no more.
+    pub fn into_pieces(mut self) -> Pieces {
+        self.work();
+        self.pieces
+    }
+
+    /// About how many bytes of memory it has beyond its own size, in a time that does not grow with the number of samples.
+    pub fn allocated(&self) -> usize {
+        self.waiting.capacity() * size_of::<i32>() + self.pieces.allocated()
+    }
 }

@@ -34,6 +34,9 @@ use std::{collections::BTreeMap, ops::Range};
 /// The number of samples whose angles are in memory at once.
 const CHUNK: usize = 1 << 16;
 
+/// The bytes that a stretch of 40 000 samples has beyond the size of a [`Piece`]: its angles and its powers.
+const OF_A_STRETCH: usize = 12_000;
+
 /// What is kept of one axis of a record, as far as it was read. It takes some kilobytes for each contiguous stretch.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Pieces {
@@ -89,6 +92,11 @@ impl Pieces {
     /// The number of samples.
     pub fn samples(&self) -> u64 {
         self.pieces().map(Piece::samples).sum()
+    }
+
+    /// About how many bytes of memory it has beyond its own size: a stretch counts as one of 40 000 samples.
+    fn allocated(&self) -> usize {
+        self.stretches.len() * (size_of::<Piece>() + OF_A_STRETCH)
     }
 
     /// The sample numbers of the contiguous stretches, earliest first.

@@ -44,7 +44,7 @@ const COMMANDS: [(&[&str], &str); 8] = [
 ];
 
 /// The calls that a file is read and written by.
-const CALLS: [&str; 14] = [
+pub(crate) const CALLS: [&str; 14] = [
     "write",
     "openat",
     "rename",
@@ -62,7 +62,29 @@ const CALLS: [&str; 14] = [
 ];
 
 /// What happens at a call.
-const FAULTS: [&str; 3] = ["error=ENOSPC", "error=EIO", "signal=KILL"];
+pub(crate) const FAULTS: [&str; 3] = ["error=ENOSPC", "error=EIO", "signal=KILL"];
+
+/// The start of a command line that injects a fault into the call of this number of each thread.
+pub(crate) fn traced(folder: &Path, call: &str, fault: &str, number: usize) -> Command {
+    let mut traced = Command::new("strace");
+    traced
+        .current_dir(folder)
+        .args(["-f", "-qq", "-o", "trace"]);
+    traced.args([
+        "-e",
+        &format!("trace={call}"),
+        "-e",
+        &format!("inject={call}:{fault}:when={number}"),
+    ]);
+    traced
+}
+
+/// Whether the fault came.
+pub(crate) fn was_injected(folder: &Path) -> bool {
+    let trace = fs::read(folder.join("trace")).unwrap();
+    let trace = String::from_utf8_lossy(&trace).into_owned();
+    trace.contains("INJECTED") || trace.contains("killed by SIGKILL")
+}
 
 /// Runs a command whose call of this number and its fault are these; `None` if it makes fewer such calls.
 fn faulty(
@@ -73,28 +95,14 @@ fn faulty(
     number: usize,
 ) -> Option<Output> {
     let program = command(folder, &[]);
-    let inject = format!("inject={call}:{fault}:when={number}");
-    let mut traced = Command::new("strace");
-    traced.current_dir(folder);
-    traced.args([
-        "-f",
-        "-qq",
-        "-o",
-        "trace",
-        "-e",
-        &format!("trace={call}"),
-        "-e",
-        &inject,
-    ]);
+    let mut traced = traced(folder, call, fault, number);
     let output = traced
         .arg(program.get_program())
         .arg("--quiet")
         .args(arguments)
         .output()
         .unwrap();
-    let trace = fs::read(folder.join("trace")).unwrap();
-    let trace = String::from_utf8_lossy(&trace).into_owned();
-    (trace.contains("INJECTED") || trace.contains("killed by SIGKILL")).then_some(output)
+    was_injected(folder).then_some(output)
 }
 
 fn names(folder: &Path) -> BTreeSet<String> {

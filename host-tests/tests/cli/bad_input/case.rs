@@ -89,6 +89,11 @@ impl Case {
         &self.name
     }
 
+    /// The files, and the words of the command.
+    pub(crate) fn parts(&self) -> (&[(String, Vec<u8>)], &[String]) {
+        (&self.files, &self.arguments)
+    }
+
     /// Runs the command, and returns what it used, or what is wrong with its end.
     pub(crate) fn run(&self, folder: &Path, needed_kib: u64) -> Result<Usage, String> {
         for (name, bytes) in &self.files {

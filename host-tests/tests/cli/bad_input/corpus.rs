@@ -104,7 +104,7 @@ fn is_text(bytes: &[u8]) -> bool {
 }
 
 /// Changed copies of every good file, of certificates with right checksums, and what was made to claim much.
-fn corpus() -> Vec<Case> {
+pub(crate) fn corpus() -> Vec<Case> {
     let good = good_files();
     let mut cases = Vec::new();
     for (number, file) in good.iter().enumerate() {

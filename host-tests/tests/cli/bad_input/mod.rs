@@ -15,6 +15,7 @@ mod text;
 mod ulogs;
 
 use case::{Case, Usage};
+pub(crate) use corpus::corpus;
 use std::sync::{
     Mutex,
     atomic::{AtomicUsize, Ordering::Relaxed},

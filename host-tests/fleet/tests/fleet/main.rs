@@ -1,0 +1,5 @@
+//! Many devices on an engine for tables: the same states and coefficients, whatever the partitions and the machines.
+
+mod cluster;
+mod logs;
+mod queries;

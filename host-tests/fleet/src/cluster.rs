@@ -37,7 +37,11 @@ pub fn local(settings: SessionConfig) -> Result<SessionContext> {
 /// # Errors
 /// When the address is not valid.
 pub async fn remote(scheduler: &str, settings: SessionConfig) -> Result<SessionContext> {
-    SessionContext::remote_with_state(scheduler, state(settings)?).await
+    let state = default_session_builder(settings)?;
+    let mut session = SessionContext::remote_with_state(scheduler, state).await?;
+    // A state loses its functions on the way.
+    register(&mut session)?;
+    Ok(session)
 }
 
 /// The state of a session of a scheduler.

@@ -73,12 +73,7 @@ impl GroupsAccumulator for Groups {
         self.add(self.rows, columns, groups, filter, number)
     }
 
-    fn merge_batch(
-        &mut self,
-        columns: &[ArrayRef],
-        groups: &[usize],
-        number: usize,
-    ) -> Result<()> {
+    fn merge_batch(&mut self, columns: &[ArrayRef], groups: &[usize], number: usize) -> Result<()> {
         self.add(Rows::States, columns, groups, None, number)
     }
 

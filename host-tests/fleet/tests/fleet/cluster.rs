@@ -180,9 +180,10 @@ fn two_executors_give_the_same_bytes_and_one_that_is_killed_changes_none() {
     );
 
     // Half-way, after it has done some of the work.
-    let query = cluster.ask(STATES, &logs, &output);
+    let mut query = cluster.ask(STATES, &logs, &output);
     until("the second executor's work", || work_of(1) > before[1]);
     cluster.executors[1].0.kill().unwrap();
+    assert!(query.0.try_wait().unwrap().is_none(), "the query ended before");
     assert_eq!(
         found(&answered(query, &output)),
         expected,

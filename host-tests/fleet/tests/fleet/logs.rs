@@ -3,8 +3,8 @@
 use datafusion::{
     arrow::{
         array::{
-            ArrayRef, AsArray, BinaryArray, Float64Array, Int64Array, ListArray,
-            RecordBatch, StringArray,
+            ArrayRef, AsArray, BinaryArray, Float64Array, Int64Array, ListArray, RecordBatch,
+            StringArray,
         },
         compute::concat_batches,
         datatypes::Int32Type,

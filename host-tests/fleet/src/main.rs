@@ -20,6 +20,10 @@ use std::{
     time::Duration,
 };
 
+/// Batches of samples are large, and the usual allocator returns such memory to the system after each of them.
+#[global_allocator]
+static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
+
 /// Coefficients of many gyros from their logs in Parquet, by SQL.
 #[derive(Debug, Parser)]
 #[command(name = "allanite-fleet", version)]

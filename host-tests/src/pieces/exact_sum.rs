@@ -52,7 +52,20 @@ impl Places {
 impl ExactSum {
     /// Adds the sum of these places.
     pub(super) fn add(&mut self, places: &Places) {
-        for (place, &sum) in (0..).zip(&places.0) {
+        let mut numbers = (0..PLACES as u8)
+            .zip(&places.0)
+            .filter(|(_, sum)| **sum > 0);
+        let Some((lowest, _)) = numbers.next() else {
+            return;
+        };
+        let highest = numbers.next_back().map_or(lowest, |(place, _)| place);
+        let sums = &places.0[usize::from(lowest)..=usize::from(highest)];
+        if self.places.is_empty() {
+            // In one allocation: a piece has hundreds of sums.
+            (self.lowest, self.places) = (lowest, sums.to_vec());
+            return;
+        }
+        for (place, &sum) in (lowest..).zip(sums) {
             self.add_to(place, sum);
         }
     }

@@ -38,6 +38,13 @@ impl Gathered {
         if !both.is_empty() {
             return Err(twice(both));
         }
+        if counts.len() >= LONG {
+            // Long enough for a piece of its own, without a copy.
+            self.work();
+            self.pieces.put(first, counts);
+            self.first = range.end;
+            return Ok(());
+        }
         if range.start != waiting.end {
             self.work();
             self.first = first;

@@ -33,13 +33,14 @@ pub(super) struct Powers {
 }
 
 impl Powers {
-    /// Adds the segments that begin at these numbers. `angle` tells the angle at a boundary of blocks of `2^block_bits` samples.
-    /// The segments have all their boundaries.
+    /// Adds the segments that begin at these numbers. `values` writes the blocks of the segment that begins at a boundary of blocks
+    /// of `2^block_bits` samples, as [`Angle::blocks`](super::squares::Angle::blocks) does. The segments have all their
+    /// boundaries.
     pub(super) fn add(
         &mut self,
         segments: Range<u64>,
         block_bits: u32,
-        angle: impl Fn(u64) -> i64,
+        values: impl Fn(u64, f32, &mut [f32; SEGMENT]),
     ) {
         let starts: Vec<u64> = segments.map(|segment| segment * HOP).collect();
         if starts.is_empty() {
@@ -50,20 +51,12 @@ impl Powers {
         // range of single precision, as in the accumulator.
         let scale = 2f32.powi(-(block_bits as i32 + UNIT_BITS + 3));
         for group in starts.chunks(4) {
-            let mut values = [[0.0; SEGMENT]; 4];
-            for (values, &start) in values.iter_mut().zip(group) {
-                let mut before = angle(start);
-                let mut first = None;
-                for (value, boundary) in values.iter_mut().zip(start + 1..) {
-                    let after = angle(boundary);
-                    let block = after.wrapping_sub(before);
-                    let first = *first.get_or_insert(block);
-                    *value = block.wrapping_sub(first) as f32 * scale;
-                    before = after;
-                }
+            let mut of_group = [[0.0; SEGMENT]; 4];
+            for (of_segment, &start) in of_group.iter_mut().zip(group) {
+                values(start, scale, of_segment);
             }
-            segment_powers(&mut values);
-            for powers in values.iter().take(group.len()) {
+            segment_powers(&mut of_group);
+            for powers in of_group.iter().take(group.len()) {
                 for ([sum, squares], &power) in sums.iter_mut().zip(powers) {
                     sum.add(power);
                     squares.add(power * power);

@@ -8,6 +8,9 @@ pub(super) trait Angle: Copy + Default {
     /// The angle in 64 bits.
     fn wide(self) -> i64;
 
+    /// The blocks between neighbouring angles without the first block, as floats times a factor.
+    fn blocks(angles: &[Self], factor: f32, blocks: &mut [f32]);
+
     /// The sum of the squares of the second differences at a distance of `lag` angles. It stays at the largest number if 128
     /// bits do not hold it.
     fn squares(angles: &[Self], lag: usize) -> u128;
@@ -32,6 +35,16 @@ impl Angle for Near {
     #[inline(always)]
     fn wide(self) -> i64 {
         self.0.into()
+    }
+
+    fn blocks(angles: &[Self], factor: f32, blocks: &mut [f32]) {
+        let pairs = || angles.iter().zip(angles.iter().skip(1));
+        let block = |(before, after): (&Self, &Self)| after.0.wrapping_sub(before.0);
+        let first = pairs().next().map_or(0, block);
+        for (value, pair) in blocks.iter_mut().zip(pairs()) {
+            // 29 bits hold it.
+            *value = block(pair).wrapping_sub(first) as f32 * factor;
+        }
     }
 
     fn squares(angles: &[Self], lag: usize) -> u128 {
@@ -62,6 +75,15 @@ impl Angle for i64 {
     #[inline(always)]
     fn wide(self) -> i64 {
         self
+    }
+
+    fn blocks(angles: &[Self], factor: f32, blocks: &mut [f32]) {
+        let pairs = || angles.iter().zip(angles.iter().skip(1));
+        let block = |(&before, &after): (&Self, &Self)| after.wrapping_sub(before);
+        let first = pairs().next().map_or(0, block);
+        for (value, pair) in blocks.iter_mut().zip(pairs()) {
+            *value = block(pair).wrapping_sub(first) as f32 * factor;
+        }
     }
 
     fn squares(angles: &[Self], lag: usize) -> u128 {

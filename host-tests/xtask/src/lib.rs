@@ -7,6 +7,7 @@ mod c;
 pub mod cost;
 #[cfg(feature = "dist")]
 mod dist;
+mod fleet;
 mod fuzz;
 mod miri;
 pub mod page;
@@ -129,6 +130,13 @@ enum Task {
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         arguments: Vec<String>,
     },
+    /// Build and test the functions for fleets on DataFusion and Ballista, in target/fleet. The engine takes half an hour to build the
+    /// first time.
+    Fleet {
+        /// Arguments for the tests, such as a part of a name.
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        arguments: Vec<String>,
+    },
     /// Pack the program for others to install: a static program, its completions, its manual, a package for Debian, an
     /// archive, the list of its parts (CycloneDX), and checksums. SOURCE_DATE_EPOCH, or else the last commit, is their time.
     #[cfg(feature = "dist")]
@@ -209,6 +217,7 @@ impl CommandLine {
             }
             Task::Page { output } => page::page(&output),
             Task::Python { arguments } => python::run(&arguments),
+            Task::Fleet { arguments } => fleet::run(&arguments),
             #[cfg(feature = "dist")]
             Task::Dist { check, output } => dist::run(&output, check),
             Task::Results {

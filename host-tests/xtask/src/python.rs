@@ -1,7 +1,7 @@
 //! Builds the package for Python, and tests it in a virtual environment of its own.
 
 use crate::{
-    firmware::{cargo, workspace},
+    firmware::{cargo, host_target_directory, workspace},
     step::step,
 };
 use anyhow::{Context as _, Result, bail};
@@ -41,7 +41,8 @@ pub(crate) fn run(arguments: &[String]) -> Result<()> {
         );
         return Ok(());
     };
-    let target = target();
+    // The wheel shares it with the programs of the host.
+    let target = host_target_directory();
     let environment = target.join("python");
     let of_environment = programs(&environment);
     if !is_able(&of_environment.join("python").to_string_lossy()) {
@@ -118,13 +119,6 @@ pub(crate) fn run(arguments: &[String]) -> Result<()> {
             .current_dir(workspace().join("src/python"))
             .env("ALLANITE", target.join("release/allanite")),
     )
-}
-
-/// The target folder, which the wheel shares with the programs of the host.
-fn target() -> PathBuf {
-    let folder =
-        std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| "target".into(), PathBuf::from);
-    workspace().join(folder)
 }
 
 /// The folder of the programs of a virtual environment.

@@ -17,7 +17,7 @@ pub use core::{CORES, CORTEX_M4F, Core, Precision, RISCV};
 pub use emulator::{Run, run, run_with, start};
 pub use heartbeat::{Heartbeat, PERIOD};
 pub use image::Image;
-pub use toolchain::{Toolchain, Way, target_directory};
+pub use toolchain::{Toolchain, Way, host_target_directory, target_directory};
 
 /// The remedy at the end of every failure to build or run an image.
 pub const REMEDY: &str = "`cargo xtask setup` installs what is missing";

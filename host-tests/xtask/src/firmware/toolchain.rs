@@ -202,8 +202,13 @@ impl Toolchain {
 
 /// A folder for the artefacts of the cores, below the target folder in use.
 pub fn target_directory() -> PathBuf {
+    host_target_directory().join("image")
+}
+
+/// The folder into which programs of the host are built.
+pub fn host_target_directory() -> PathBuf {
     let base = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| "target".into(), PathBuf::from);
-    super::workspace().join(base).join("image")
+    super::workspace().join(base)
 }
 
 /// Locks that folder against other programs that build there, until the lock is dropped.

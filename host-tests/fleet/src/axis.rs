@@ -65,7 +65,7 @@ impl Axis {
     }
 
     /// The state as bytes.
-    pub(crate) fn to_bytes(&mut self) -> Result<Vec<u8>> {
+    pub(crate) fn state(&mut self) -> Result<Vec<u8>> {
         self.gathered.pieces().to_bytes().map_err(raised)
     }
 

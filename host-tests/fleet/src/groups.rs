@@ -56,7 +56,7 @@ impl Groups {
         let mut states = BinaryBuilder::new();
         for mut axis in which.take_needed(&mut self.axes) {
             self.allocated -= axis.as_ref().map_or(0, Axis::allocated).min(self.allocated);
-            states.append_option(axis.as_mut().map(Axis::to_bytes).transpose()?);
+            states.append_option(axis.as_mut().map(Axis::state).transpose()?);
         }
         Ok(Arc::new(states.finish()))
     }
@@ -132,7 +132,7 @@ impl Accumulator for One {
     }
 
     fn evaluate(&mut self) -> Result<ScalarValue> {
-        let state = self.axis.as_mut().map(Axis::to_bytes).transpose()?;
+        let state = self.axis.as_mut().map(Axis::state).transpose()?;
         Ok(ScalarValue::Binary(state))
     }
 

@@ -14,7 +14,7 @@ use futures::TryStreamExt;
 use std::{
     fs,
     io::Write,
-    net::SocketAddr,
+    net::{SocketAddr, TcpStream},
     path::{Path, PathBuf},
     process::ExitCode,
     time::Duration,
@@ -112,7 +112,7 @@ fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             // Nobody is left to tell when standard error is closed.
-            let _ = writeln!(std::io::stderr(), "{}", one_line(&error));
+            let _ = writeln!(std::io::stderr(), "allanite-fleet: {}", one_line(&error));
             ExitCode::from(2)
         }
     }
@@ -181,7 +181,10 @@ impl Query {
             settings = settings.with_target_partitions(partitions.max(1));
         }
         let session = match &self.scheduler {
-            Some(scheduler) => remote(scheduler, settings).await?,
+            Some(scheduler) => {
+                answers(scheduler)?;
+                remote(scheduler, settings).await?
+            }
             None => local(settings)?,
         };
         for (name, path) in &self.tables {
@@ -201,6 +204,22 @@ impl Query {
                 Ok(())
             }
         }
+    }
+}
+
+/// Whether somebody answers at `df://HOST:PORT`, which the engine would tell in other words.
+fn answers(scheduler: &str) -> Result<()> {
+    let Some(address) = scheduler
+        .strip_prefix("df://")
+        .filter(|address| address.contains(':'))
+    else {
+        bail!("--scheduler {scheduler}: no address; write df://HOST:PORT");
+    };
+    match TcpStream::connect(address) {
+        Ok(_) => Ok(()),
+        Err(error) => bail!(
+            "--scheduler {scheduler}: nobody answers ({error}); start `allanite-fleet scheduler` there"
+        ),
     }
 }
 

@@ -17,15 +17,22 @@ const MANIFEST: &str = "host-tests/fleet/Cargo.toml";
 pub(crate) fn run(arguments: &[String]) -> Result<()> {
     println!("The engine takes half an hour to build the first time.");
     step("fleets: format", of_package("fmt").args(["--", "--check"]))?;
-    // The optimised program is that which the tests run as a cluster.
     let target = host_target_directory().join("fleet");
+    // The optimised program is that which the tests run as a cluster.
+    let built = |task: &str| {
+        let mut command = of_package(task);
+        command
+            .args(["--release", "--locked", "--target-dir"])
+            .arg(&target);
+        command
+    };
     step(
         "fleets: tests on DataFusion and Ballista",
-        of_package("test")
-            .args(["--release", "--locked", "--target-dir"])
-            .arg(&target)
-            .arg("--")
-            .args(arguments),
+        built("test").arg("--").args(arguments),
+    )?;
+    step(
+        "fleets: lints",
+        built("clippy").args(["--all-targets", "--", "-D", "warnings"]),
     )?;
     println!(
         "the program: {}",

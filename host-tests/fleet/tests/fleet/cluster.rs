@@ -67,17 +67,25 @@ fn until(what: &str, mut is_so: impl FnMut() -> bool) {
     }
 }
 
+/// Waits until a process serves its address.
+fn serves(process: &mut Process, address: SocketAddr) {
+    until("a process", || {
+        assert_eq!(process.0.try_wait().unwrap(), None, "it has ended");
+        TcpStream::connect(address).is_ok()
+    });
+}
+
 impl Cluster {
     fn new(folder: &Path) -> Self {
         let address = free();
-        let scheduler = started(&[
+        let mut scheduler = started(&[
             "scheduler",
             "--bind",
             &address.to_string(),
             "--patience",
             PATIENCE,
         ]);
-        until("the scheduler", || TcpStream::connect(address).is_ok());
+        serves(&mut scheduler, address);
         let mut cluster = Self {
             scheduler: (address, scheduler),
             executors: Vec::new(),
@@ -90,22 +98,23 @@ impl Cluster {
 
     /// Starts an executor of one thread that keeps results in this folder.
     fn add(&mut self, folder: &Path) {
-        let (own, scheduler) = (free().to_string(), self.scheduler.0.to_string());
+        let (own, scheduler) = (free(), self.scheduler.0.to_string());
         let folder = folder.to_str().unwrap();
-        self.executors.push(started(&[
+        let mut executor = started(&[
             "executor",
             "--scheduler",
             &scheduler,
             "--bind",
-            &own,
+            &own.to_string(),
             "--threads",
             "1",
             "--folder",
             folder,
             "--patience",
             PATIENCE,
-        ]));
-        until("an executor", || TcpStream::connect(&own).is_ok());
+        ]);
+        serves(&mut executor, own);
+        self.executors.push(executor);
     }
 
     /// Begins a query over logs.
@@ -183,7 +192,10 @@ fn two_executors_give_the_same_bytes_and_one_that_is_killed_changes_none() {
     let mut query = cluster.ask(STATES, &logs, &output);
     until("the second executor's work", || work_of(1) > before[1]);
     cluster.executors[1].0.kill().unwrap();
-    assert!(query.0.try_wait().unwrap().is_none(), "the query ended before");
+    assert!(
+        query.0.try_wait().unwrap().is_none(),
+        "the query ended before"
+    );
     assert_eq!(
         found(&answered(query, &output)),
         expected,
@@ -198,4 +210,68 @@ fn two_executors_give_the_same_bytes_and_one_that_is_killed_changes_none() {
         expected,
         "with a new executor"
     );
+}
+
+#[test]
+fn what_cannot_be_asked_has_one_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let logs = folder.path().join("logs");
+    write(&logs, Fleet::SMALL.rows(|| 20_000), 1, 7, &mut random(3));
+    let logs = format!("logs={}", logs.display());
+    let nobody = format!("df://{}", free());
+    let nowhere = folder.path().join("none/states.parquet");
+    let nowhere = nowhere.to_str().unwrap();
+    for (arguments, message) in [
+        (
+            vec![
+                "query",
+                "--table",
+                &logs,
+                "SELECT allan_stat(start) FROM logs",
+            ],
+            "allan_stat",
+        ),
+        (
+            vec!["query", "--table", &logs, "SELECT start FROM log"],
+            "log",
+        ),
+        (vec!["query", "--table", &logs, "SELECT FROM"], "Expected"),
+        (
+            vec![
+                "query",
+                "--table",
+                &logs,
+                "SELECT allan_state(start, device, rate, scale) FROM logs",
+            ],
+            "a list of whole numbers",
+        ),
+        (
+            vec!["query", "--table", "logs=nothing", STATES],
+            "nothing: no such file or folder",
+        ),
+        (
+            vec!["query", "--table", &logs, "--output", nowhere, STATES],
+            "none/states.parquet",
+        ),
+        (
+            vec!["query", "--table", &logs, "--scheduler", &nobody, STATES],
+            "nobody answers",
+        ),
+        (
+            vec!["query", "--table", &logs, "--scheduler", "nobody", STATES],
+            "--scheduler nobody",
+        ),
+        (
+            vec!["executor", "--scheduler", "nobody"],
+            "--scheduler nobody",
+        ),
+    ] {
+        let output = Command::new(PROGRAM).args(&arguments).output().unwrap();
+        let errors = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {errors}");
+        assert!(
+            errors.lines().count() == 1 && errors.contains(message),
+            "{arguments:?}: {errors}"
+        );
+    }
 }

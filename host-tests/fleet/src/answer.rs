@@ -129,7 +129,7 @@ impl Question {
                 let (document, _) = record.fit(&[]).map_err(raised)?;
                 let axis = axis(&document)?;
                 let mut row = serde_json::json!({
-                    "samples": samples, "stretches": stretches, "adequate": axis["adequate"], "chi2": axis["chi2"],
+                    "samples": samples, "stretches": stretches, "invalid": axis["invalid"], "adequate": axis["adequate"], "chi2": axis["chi2"],
                     "dof": axis["dof"],
                 });
                 for coefficient in axis["coefficients"].as_array().into_iter().flatten() {
@@ -173,6 +173,7 @@ fn of_fit() -> Fields {
     let mut fields = vec![
         field("samples", DataType::Int64),
         field("stretches", DataType::Int64),
+        field("invalid", DataType::Utf8),
         field("adequate", DataType::Boolean),
         field("chi2", DataType::Float64),
         field("dof", DataType::Int64),

@@ -16,7 +16,7 @@
 //! | `allan_state_of_samples(number, count, rate, scale)` | aggregate: the same with one sample a row |
 //! | `allan_merge(state)` | aggregate: the state of all parts |
 //! | `allan_samples(state)` | the number of samples |
-//! | `allan_fit(state, unit)` | a struct of the five coefficients with their 95 % intervals, in the unit times the powers of s of IEEE Std 952, `NULL` where the record does not show one; `adequate`, `chi2`, `dof`, `samples`, `stretches` |
+//! | `allan_fit(state, unit)` | a struct of the five coefficients with their 95 % intervals, in the unit times the powers of s of IEEE Std 952, `NULL` where the record does not show one; `adequate`, `chi2`, `dof`, `samples`, `stretches`, and `invalid`: why the samples are not those of a gyro at rest, or `NULL` |
 //! | `allan_diagnose(state, unit)` | a struct of `verdict`, `missing` (a list of effects) and `conclusion` in words |
 
 mod aggregate;

@@ -68,7 +68,7 @@ pub(crate) fn certificate(
 ) -> Result<Certificate, Failure> {
     let axes = if record::is_curve(path) {
         let axes = CurveFile::read(path)?.axes.into_iter();
-        axes.map(|axis| (axis, Evidence::default())).collect()
+        axes.map(record::beside).collect()
     } else {
         record::read_with_evidence(path, about_log, covariates)?
     };

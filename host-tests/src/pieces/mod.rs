@@ -16,9 +16,13 @@
 mod curve;
 mod edges;
 mod exact_sum;
+mod extremes;
 mod gathered;
+mod invalid;
 mod piece;
 mod powers;
+mod runs;
+mod sizes;
 mod squares;
 mod state;
 #[cfg(test)]

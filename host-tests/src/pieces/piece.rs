@@ -2,7 +2,10 @@
 
 use super::{
     edges::{Edges, Joint, boundaries},
+    extremes::Extremes,
     powers::{Powers, segments},
+    runs::Runs,
+    sizes::Sizes,
     squares::{Angle, NEAR, Near, difference},
 };
 use crate::sizes::{LEVELS, MOST_SAMPLES, OCTAVES, SEGMENT};
@@ -34,6 +37,21 @@ pub(super) struct Piece {
     edges: [Edges; LENGTHS],
     /// For each level of the spectrum, the powers of its segments.
     powers: [Powers; LEVELS],
+    /// For each length of [`SIZED`], the sizes of the differences of neighbouring blocks.
+    sizes: [Sizes; SIZED.len()],
+    /// The number of samples that equal the one before.
+    repeats: u64,
+    runs: Runs,
+    extremes: Extremes,
+}
+
+/// The block lengths whose differences are counted by their sizes, as places among the lengths, which are 1, 64 and 512 samples; and
+/// the number of differences that are counted together. Of samples, that is more than one, because there are so many of them.
+const SIZED: [(usize, u64); 3] = [(0, 32), (2, 1), (3, 1)];
+
+/// The groups of so many differences of neighbouring blocks that lie between these boundaries.
+fn groups(boundaries: &Range<u64>, together: u64) -> Range<u64> {
+    starts(boundaries, together, together + 1)
 }
 
 /// The number of boundaries of blocks of `8^length` samples from one to the next start of a difference of an octave, and
@@ -58,14 +76,15 @@ impl Piece {
     pub(super) fn of(start: u64, counts: &[i32]) -> Self {
         // A constant takes no part in differences and in powers. Without the first count, nearly all records have small angles.
         let constant = counts.first().map_or(0, |&count| i64::from(count));
-        if is_near(counts, constant) {
-            Self::of_angles::<Near>(start, counts, constant)
+        let extremes = Extremes::of(counts);
+        if is_near(counts, constant, &extremes) {
+            Self::of_angles::<Near>(start, counts, constant, extremes)
         } else {
-            Self::of_angles::<i64>(start, counts, constant)
+            Self::of_angles::<i64>(start, counts, constant, extremes)
         }
     }
 
-    fn of_angles<A: Angle>(start: u64, counts: &[i32], constant: i64) -> Self {
+    fn of_angles<A: Angle>(start: u64, counts: &[i32], constant: i64, extremes: Extremes) -> Self {
         let mut angles = Vec::with_capacity(counts.len() + 1);
         let mut angle = A::default();
         angles.push(angle);
@@ -80,6 +99,9 @@ impl Piece {
         }
         let mut powers: [Powers; LEVELS] = Default::default();
         let mut edges = from_fn(|_| Edges::default());
+        let mut sizes: [Sizes; SIZED.len()] = Default::default();
+        let pairs = counts.iter().zip(counts.iter().skip(1));
+        let repeats: u64 = pairs.map(|(one, next)| u64::from(one == next)).sum();
         for (bits, sum) in sums[FIRST..].iter_mut().enumerate() {
             let places = boundaries(&range, 1 << bits);
             *sum = A::squares(&angles, 4);
@@ -90,6 +112,14 @@ impl Piece {
                     let of_constant = constant.wrapping_mul(samples as i64);
                     angles[place as usize].wide().wrapping_add(of_constant)
                 });
+                let sized = SIZED.iter().position(|&(sized, _)| sized == length);
+                if let Some(at) = sized {
+                    for group in groups(&places, SIZED[at].1) {
+                        let first = (group * SIZED[at].1 - places.start) as usize;
+                        let angles = angles.get(first..first + SIZED[at].1 as usize + 2);
+                        sizes[at].add_all(A::together(angles.unwrap_or_default()));
+                    }
+                }
                 if let Some(powers) = powers.get_mut(length) {
                     let values = |start: u64, factor: f32, values: &mut [f32; SEGMENT]| {
                         let angles = &angles[(start - places.start) as usize..];
@@ -117,6 +147,10 @@ impl Piece {
             squares: sums,
             edges,
             powers,
+            runs: Runs::of(counts, repeats),
+            repeats,
+            sizes,
+            extremes,
         }
     }
 
@@ -135,7 +169,7 @@ impl Piece {
         let block = 1 << (RADIX_BITS * length_of(octave));
         let range = boundaries(&self.range(), block);
         let (stride, cluster) = strides(octave);
-        let starts = starts(&range, stride, cluster);
+        let starts = starts(&range, stride, 2 * cluster);
         let number = starts.end.saturating_sub(starts.start);
         (number, self.squares.get(octave).copied().unwrap_or(0))
     }
@@ -145,6 +179,26 @@ impl Piece {
         let range = boundaries(&self.range(), 1 << (RADIX_BITS * level));
         let segments = segments(&range);
         (segments.end - segments.start, &self.powers[level])
+    }
+
+    /// The number of samples that equal the one before.
+    pub(super) fn repeats(&self) -> u64 {
+        self.repeats
+    }
+
+    /// The sizes of the differences of neighbouring samples, 32 together, of blocks of 64 and of blocks of 512.
+    pub(super) fn sizes(&self) -> &[Sizes; 3] {
+        &self.sizes
+    }
+
+    /// Runs of equal samples.
+    pub(super) fn runs(&self) -> &Runs {
+        &self.runs
+    }
+
+    /// The extreme samples.
+    pub(super) fn extremes(&self) -> &Extremes {
+        &self.extremes
     }
 
     /// Joins the piece that begins where this one ends. Nothing of the record is lost.
@@ -177,8 +231,27 @@ impl Piece {
                 };
                 powers.add(crossing, bits as u32, values);
             }
+            if let Some(at) = SIZED.iter().position(|&(sized, _)| sized == length) {
+                let together = SIZED[at].1;
+                self.sizes[at].join(&next.sizes[at]);
+                let [left, right] =
+                    [&joint.left.0, &joint.right.0].map(|range| groups(range, together));
+                let all = groups(&joint.range(), together);
+                for group in left.end.max(all.start)..right.start.min(all.end) {
+                    let boundaries = (group * together..).take(together as usize + 2);
+                    let angles: Vec<i64> = boundaries.filter_map(|at| joint.angle(at)).collect();
+                    self.sizes[at].add_all(i64::together(&angles));
+                }
+            }
+            if length == 0 {
+                // The difference of the last sample and the first one is the only one of neighbours that is across.
+                let are_equal = differences_across(&joint, (1, 1)).any(|size| size == 0);
+                self.repeats += next.repeats + u64::from(are_equal);
+                self.runs.join(&next.runs, are_equal);
+            }
             self.edges[length] = joint.edges();
         }
+        self.extremes.join(&next.extremes);
         self.total = self.total.wrapping_add(next.total);
         self.end = next.end;
     }
@@ -198,8 +271,17 @@ impl Piece {
             let (differences, sum) = self.octave(octave);
             differences > 0 || sum == 0
         });
+        let mut sized = SIZED.iter().zip(&self.sizes);
+        let are_sizes = sized.all(|(&(length, together), sizes)| {
+            let range = boundaries(&self.range(), 1 << (RADIX_BITS * length));
+            let groups = groups(&range, together);
+            sizes.is_possible(groups.end - groups.start, together)
+        });
         self.start < self.end
             && self.end <= MOST_SAMPLES
+            && are_sizes
+            && self.runs.is_possible(self.samples(), self.repeats)
+            && self.extremes.is_possible(self.samples())
             && edges.all(|is_possible| is_possible)
             && levels.all(|is_possible| is_possible)
             && octaves.all(|is_possible| is_possible)
@@ -207,16 +289,14 @@ impl Piece {
 }
 
 /// Whether all angles of these counts without a constant are near zero.
-fn is_near(counts: &[i32], constant: i64) -> bool {
-    // The counts alone tell it of most records, and do so in a fraction of the time.
-    let ends = counts
-        .iter()
-        .fold([i32::MAX, i32::MIN], |[least, most], &count| {
-            [least.min(count), most.max(count)]
-        });
-    let ends = ends.map(|end| (i64::from(end) - constant).unsigned_abs());
+fn is_near(counts: &[i32], constant: i64, extremes: &Extremes) -> bool {
     let near = NEAR.unsigned_abs();
-    if ends[0].max(ends[1]).saturating_mul(counts.len() as u64) < near {
+    // The extremes alone tell it of most records, and do so in a fraction of the time.
+    if extremes
+        .distance(constant)
+        .saturating_mul(counts.len() as u64)
+        < near
+    {
         return true;
     }
     let (mut angle, mut farthest) = (0_i64, 0_u64);
@@ -227,23 +307,32 @@ fn is_near(counts: &[i32], constant: i64) -> bool {
     farthest < near
 }
 
-/// The starts of differences between these boundaries, in units of their stride.
-fn starts(boundaries: &Range<u64>, stride: u64, cluster: u64) -> Range<u64> {
+/// The starts of what spans so many blocks between these boundaries, in units of their stride.
+fn starts(boundaries: &Range<u64>, stride: u64, span: u64) -> Range<u64> {
     let first = boundaries.start.div_ceil(stride);
-    let last = boundaries.end.checked_sub(2 * cluster + 1);
+    let last = boundaries.end.checked_sub(span + 1);
     first..last.map_or(first, |last| first.max(last / stride + 1))
 }
 
 /// The sum of the squares of the differences that lie within neither piece.
-fn across(joint: &Joint<'_>, (stride, cluster): (u64, u64)) -> u128 {
-    let [left, right] = [&joint.left.0, &joint.right.0].map(|range| starts(range, stride, cluster));
-    let all = starts(&joint.range(), stride, cluster);
+fn across(joint: &Joint<'_>, strides: (u64, u64)) -> u128 {
+    let squares =
+        differences_across(joint, strides).map(|size| u128::from(size) * u128::from(size));
+    squares.fold(0, u128::saturating_add)
+}
+
+/// The sizes of the differences that lie within neither piece.
+fn differences_across<'a>(
+    joint: &'a Joint<'_>,
+    (stride, cluster): (u64, u64),
+) -> impl Iterator<Item = u64> + 'a {
+    let [left, right] =
+        [&joint.left.0, &joint.right.0].map(|range| starts(range, stride, 2 * cluster));
+    let all = starts(&joint.range(), stride, 2 * cluster);
     let crossing = left.end.max(all.start)..right.start.min(all.end);
-    let squares = crossing.filter_map(|start| {
+    crossing.filter_map(move |start| {
         let [oldest, middle, newest] =
             [0, 1, 2].map(|clusters| joint.angle(start * stride + clusters * cluster));
-        let magnitude = difference(oldest?, middle?, newest?).unsigned_abs();
-        Some(u128::from(magnitude) * u128::from(magnitude))
-    });
-    squares.fold(0, u128::saturating_add)
+        Some(difference(oldest?, middle?, newest?).unsigned_abs())
+    })
 }

@@ -1,5 +1,7 @@
 //! Angles of a chunk, and sums of their squared differences.
 
+use super::sizes::Together;
+
 /// An angle, which may wrap.
 pub(super) trait Angle: Copy + Default {
     /// The angle after a count.
@@ -7,6 +9,9 @@ pub(super) trait Angle: Copy + Default {
 
     /// The angle in 64 bits.
     fn wide(self) -> i64;
+
+    /// The second differences of neighbouring angles together. There are at most [`BLOCK`] of them.
+    fn together(angles: &[Self]) -> Together;
 
     /// The blocks between neighbouring angles without the first block, as floats times a factor.
     fn blocks(angles: &[Self], factor: f32, blocks: &mut [f32]);
@@ -35,6 +40,23 @@ impl Angle for Near {
     #[inline(always)]
     fn wide(self) -> i64 {
         self.0.into()
+    }
+
+    fn together(angles: &[Self]) -> Together {
+        let (oldest, middle, newest) = differences(angles, 1);
+        let (mut bits, mut squares) = (0_u32, 0_u64);
+        for ((oldest, middle), newest) in oldest.iter().zip(middle).zip(newest) {
+            let late = newest.0.wrapping_sub(middle.0);
+            let size = late
+                .wrapping_sub(middle.0.wrapping_sub(oldest.0))
+                .unsigned_abs();
+            bits |= size;
+            squares = squares.wrapping_add(u64::from(size).wrapping_mul(size.into()));
+        }
+        Together {
+            bits: bits.into(),
+            squares: squares.into(),
+        }
     }
 
     fn blocks(angles: &[Self], factor: f32, blocks: &mut [f32]) {
@@ -75,6 +97,23 @@ impl Angle for i64 {
     #[inline(always)]
     fn wide(self) -> i64 {
         self
+    }
+
+    fn together(angles: &[Self]) -> Together {
+        let (oldest, middle, newest) = differences(angles, 1);
+        let all = oldest.iter().zip(middle).zip(newest);
+        let sizes = all
+            .map(|((&oldest, &middle), &newest)| difference(oldest, middle, newest).unsigned_abs());
+        let none = Together {
+            bits: 0,
+            squares: 0,
+        };
+        sizes.fold(none, |together, size| Together {
+            bits: together.bits | size,
+            squares: together
+                .squares
+                .saturating_add(u128::from(size) * u128::from(size)),
+        })
     }
 
     fn blocks(angles: &[Self], factor: f32, blocks: &mut [f32]) {

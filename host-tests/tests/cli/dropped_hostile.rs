@@ -69,7 +69,10 @@ impl Waiting {
             "undefined",
             "{after}"
         );
-        assert_eq!(self.browser.complaints, [""; 0], "{after}");
+        // Nobody gives a page hundreds of logs within a minute, and the browser says so.
+        let complaints = &mut self.browser.complaints;
+        complaints.retain(|complaint| !complaint.contains("Throttling navigation"));
+        assert_eq!(*complaints, [""; 0], "{after}");
     }
 }
 

@@ -114,6 +114,30 @@ fn what_is_missing_between_parts_is_a_gap() {
 }
 
 #[test]
+fn what_is_wrong_with_the_samples_is_told_of_rejoined_parts_as_of_the_record() {
+    let folder = TempDir::new().unwrap();
+    let here = folder.path();
+    let mut rows = rows();
+    rows[15_000..15_900].fill("3,4".into());
+    write(here, "whole.csv", &rows);
+    write(here, "0.csv", &rows[..15_500]);
+    write(here, "1.csv", &rows[15_500..]);
+    part(here, "0.csv", 0, "0.json");
+    part(here, "1.csv", 15_500, "1.json");
+    merge(here, &["1.json", "0.json"], "all.json");
+    let whole = output(here, &[&["fit", "whole.csv"][..], &ABOUT].concat());
+    let rejoined = output(here, &["fit", "all.json"]);
+    for fit in [whole, rejoined] {
+        assert!(
+            fit.contains("stuck values: up to 900 equal values in a row"),
+            "{fit}"
+        );
+    }
+    let rest = output(here, &["fit", "0.json"]);
+    assert!(rest.contains("up to 500 equal values"), "{rest}");
+}
+
+#[test]
 fn what_cannot_be_rejoined_is_refused() {
     let folder = folder();
     let here = folder.path();

@@ -201,3 +201,16 @@ def test_lost_samples_are_gaps():
     batch = {"device": ["a"], "axis": ["x"], "start": [10], "rate": [100.0], "scale": [1.0], "counts": [[1, None, 3, 4]]}
     state = next(fleet.states([pa.table(batch, SCHEMA)])).to_pylist()[0]["state"]
     assert allanite.Pieces.from_bytes(state).stretches == ((10, 11), (12, 14))
+
+
+def test_samples_that_hang_are_told():
+    counts = samples(0, 0)
+    counts[5000:7000] = 40
+    batch = {"device": ["a"] * 2, "axis": ["x"] * 2, "start": [0, 6000], "rate": [200.0] * 2, "scale": [0.01] * 2,
+             "counts": [counts[:6000], counts[6000:]]}
+    state = next(fleet.states([pa.table(batch, SCHEMA)])).to_pylist()[0]["state"]
+    assert "stuck values" in fleet.fit(state)["invalid"]
+    assert fleet.diagnose(state)["verdict"] == "invalid"
+    good = allanite.Pieces(rate=200, scale=0.01)
+    good.push(samples(0, 0))
+    assert fleet.fit(bytes(good))["invalid"] is None

@@ -253,3 +253,29 @@ async fn narrow_counts_and_missing_states_are_taken() {
     let error = asked(&session, wide).await.unwrap_err().to_string();
     assert!(error.contains("5000000000"), "{error}");
 }
+
+#[tokio::test]
+async fn samples_that_hang_are_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut rows = Fleet::SMALL.rows(|| 1000);
+    for row in &mut rows {
+        if row.device == "d1" && (5000..7000).contains(&row.start) {
+            row.counts.fill(Some(40));
+        }
+    }
+    write(folder.path(), rows, 3, 10, &mut random(1));
+    let session = session(&[("logs", folder.path())], 2, 16).await;
+    let query = format!(
+        "SELECT fit['invalid'] AS invalid, found['verdict'] AS verdict FROM (SELECT device, axis, \
+         allan_fit(state, 'deg/s') AS fit, allan_diagnose(state, 'deg/s') AS found FROM ({STATES})) ORDER BY device, axis"
+    );
+    let rows = asked(&session, &query).await.unwrap();
+    let rows = datafusion::arrow::compute::concat_batches(&rows[0].schema(), &rows).unwrap();
+    let [invalid, verdict] = [0, 1].map(|column| rows.column(column).as_string::<i32>());
+    for row in 0..6 {
+        let hangs = [2, 3].contains(&row);
+        assert_eq!(invalid.is_valid(row), hangs);
+        assert_eq!(verdict.value(row) == "invalid", hangs);
+        assert!(!hangs || invalid.value(row).contains("stuck values"));
+    }
+}

@@ -8,6 +8,7 @@ use crate::{
         self, ColumnChoice, CovariateChoice, Covariates, Cuts, Evidence, Log, Moment, Repeats,
         TimeRange, TimeUnit,
     },
+    pieces::Pieces,
     unit::{Sensor, Unit},
 };
 use clap::Args;
@@ -137,8 +138,7 @@ pub(crate) fn measure_part(
     pieces.collect()
 }
 
-/// The curves of a log with the evidence that it holds beside them. The evidence of a curve file is
-/// empty.
+/// The curves of a log with the evidence that it holds beside them. The evidence of a curve file is what its [pieces](beside) tell.
 pub(crate) fn read_with_evidence(
     path: &Path,
     arguments: &LogArguments,
@@ -186,7 +186,7 @@ fn read_beside(
     with_evidence(&log)
 }
 
-/// The curves of a curve file, whose evidence is empty.
+/// The curves of a curve file, whose evidence is what their [pieces](beside) tell.
 ///
 /// # Errors
 /// When the file is not valid, or an option is about logs.
@@ -202,7 +202,16 @@ pub(crate) fn curves_without_evidence(
         ));
     }
     let axes = read(path, arguments)?.into_iter();
-    Ok(axes.map(|axis| (axis, Evidence::default())).collect())
+    Ok(axes.map(beside).collect())
+}
+
+/// A curve, with what its pieces tell of the samples, if it has them: whether the record is that of a gyro at rest.
+pub(crate) fn beside(axis: AxisCurve) -> (AxisCurve, Evidence) {
+    let evidence = Evidence {
+        invalid: axis.pieces.as_ref().and_then(Pieces::invalid),
+        ..Evidence::default()
+    };
+    (axis, evidence)
 }
 
 /// The curves of a log that was read, with the evidence beside each.

@@ -144,10 +144,8 @@ impl Record {
                 "give axes of one sensor",
             ));
         }
-        let curve = |(axis, pieces): &(String, Pieces)| {
-            let curve = pieces.clone().part(axis, unit)?;
-            Ok((curve, Evidence::default()))
-        };
+        let curve =
+            |(axis, pieces): &(String, Pieces)| pieces.clone().part(axis, unit).map(record::beside);
         Ok(Self {
             path: PathBuf::from("pieces"),
             axes: axes.iter().map(curve).collect::<Result<_, Failure>>()?,

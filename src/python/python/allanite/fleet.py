@@ -157,7 +157,7 @@ def fit(state: bytes, unit: str = "deg/s") -> dict[str, Any]:
     pieces = Pieces.from_bytes(state)
     axis = pieces.record(unit=unit).fit().axes[0]
     row: dict[str, Any] = {
-        "samples": pieces.samples, "stretches": len(pieces.stretches), "adequate": axis.adequate,
+        "samples": pieces.samples, "stretches": len(pieces.stretches), "invalid": axis.invalid, "adequate": axis.adequate,
         "chi2": axis.chi2, "dof": axis.dof,
     }
     for coefficient in axis.coefficients:
@@ -189,7 +189,8 @@ def register(context: Any) -> Any:
         The number of samples.
     ``allan_fit(state, unit)``
         A struct of the five coefficients with their 95 % intervals: ``N``, ``N_lower``, ``N_upper`` and so on, in the unit times
-        the powers of s of IEEE Std 952, ``NULL`` where the record does not show one; ``adequate``, ``chi2``, ``dof``.
+        the powers of s of IEEE Std 952, ``NULL`` where the record does not show one; ``adequate``, ``chi2``, ``dof``; ``invalid``
+        says why the samples are not those of a gyro at rest.
     ``allan_diagnose(state, unit)``
         A struct of ``verdict``, ``missing`` (a list of effects) and ``conclusion`` in words.
     """
@@ -223,7 +224,8 @@ def register(context: Any) -> Any:
     aggregate("allan_state", Accumulator, [numbers, pa.list_(pa.int32()), *of_sensor])
     aggregate("allan_state_of_samples", Accumulator, [numbers, pa.int32(), *of_sensor])
     aggregate("allan_merge", Merging, [pa.binary()])
-    fields = [("samples", pa.int64()), ("stretches", pa.int64()), ("adequate", pa.bool_()), ("chi2", pa.float64()), ("dof", pa.int64())]
+    fields = [("samples", pa.int64()), ("stretches", pa.int64()), ("invalid", pa.string())]
+    fields += [("adequate", pa.bool_()), ("chi2", pa.float64()), ("dof", pa.int64())]
     fields += [(f"{symbol}{end}", pa.float64()) for symbol in SYMBOLS for end in ("", "_lower", "_upper")]
     fitted = pa.struct(fields)
     diagnosed = pa.struct([("verdict", pa.string()), ("missing", pa.list_(pa.string())), ("conclusion", pa.string())])

@@ -38,9 +38,11 @@ function show() {
 /// Says the result to a screen reader, once the changes rest.
 function say(before) {
   clearTimeout(saying);
+  // Another log may be dropped meanwhile.
+  const { chi2, dof, p } = answer;
+  const was = before && before !== answer ? `, was ${tenth(before.chi2)}` : "";
   saying = setTimeout(() => {
-    const was = before && before !== answer ? `, was ${tenth(before.chi2)}` : "";
-    byId("said").textContent = `χ² ${tenth(answer.chi2)}${was}, ${answer.dof} degrees of freedom, p ${answer.p}`;
+    byId("said").textContent = `χ² ${tenth(chi2)}${was}, ${dof} degrees of freedom, p ${p}`;
   }, 400);
 }
 

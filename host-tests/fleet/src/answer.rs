@@ -13,8 +13,8 @@ use datafusion::{
     error::{DataFusionError, Result},
     logical_expr::{ColumnarValue, ScalarFunctionArgs, ScalarUDFImpl, Signature, Volatility},
 };
-use host_tests::{command::interface::Record, pieces::Pieces};
-use serde_json::Value;
+use host_tests::{command::interface::Record, failure::Failure, pieces::Pieces};
+use serde_json::{Value, json};
 use std::sync::Arc;
 
 /// The symbols of the coefficients, as the fields of `allan_fit` are named.
@@ -115,37 +115,23 @@ impl Question {
             )
         })?;
         let stretches = pieces.stretches().count();
-        let axes = [("gyro".to_owned(), pieces)];
-        let record = Record::of_pieces(&axes, &[format!("--unit={unit}")]).map_err(raised)?;
-        Ok(match self {
-            Self::Diagnosis => {
-                let diagnosis = record.diagnose(&[], &mut |_| true).map_err(raised)?;
-                let axis = axis(&diagnosis.json().map_err(raised)?)?;
-                serde_json::json!({
-                    "verdict": axis["verdict"], "missing": axis["missing"], "conclusion": diagnosis.conclusion().join(" "),
-                })
-            }
-            _ => {
-                let (document, _) = record.fit(&[]).map_err(raised)?;
-                let axis = axis(&document)?;
-                let mut row = serde_json::json!({
-                    "samples": samples, "stretches": stretches, "invalid": axis["invalid"], "adequate": axis["adequate"], "chi2": axis["chi2"],
-                    "dof": axis["dof"],
-                });
-                for coefficient in axis["coefficients"].as_array().into_iter().flatten() {
-                    let symbol = coefficient["symbol"].as_str().unwrap_or_default();
-                    let is_measured = coefficient["state"] == "measured";
-                    let measured = |key: &str| match is_measured {
-                        true => coefficient[key].clone(),
-                        false => Value::Null,
-                    };
-                    row[symbol] = measured("value");
-                    row[format!("{symbol}_lower")] = measured("lower");
-                    row[format!("{symbol}_upper")] = coefficient["upper"].clone();
-                }
-                row
-            }
-        })
+        let axes = [(AXIS.to_owned(), pieces)];
+        let record = Record::of_pieces(&axes, &[format!("--unit={unit}")]);
+        let found = record.and_then(|record| match self {
+            Self::Diagnosis => diagnosed(&record),
+            _ => fitted(&record),
+        });
+        let mut row = match found {
+            Ok(row) => row,
+            // An axis that cannot be fitted must not end the query over all others; a wrong unit does.
+            Err(failure) => match failure.to_string().split_once(&format!("axis {AXIS}: ")) {
+                Some((_, what)) => json!({ "invalid": what, "conclusion": what }),
+                None => return Err(raised(failure)),
+            },
+        };
+        row["samples"] = samples.into();
+        row["stretches"] = stretches.into();
+        Ok(row)
     }
 
     /// The answers of all rows.
@@ -160,11 +146,43 @@ impl Question {
     }
 }
 
-/// The only axis of a document.
-fn axis(document: &str) -> Result<Value> {
-    let document: Value = serde_json::from_str(document)
-        .map_err(|error| DataFusionError::External(Box::new(error)))?;
-    Ok(document["axes"][0].clone())
+/// The name of the axis, which begins what is said of it.
+const AXIS: &str = "gyro";
+
+/// The diagnosis of a record.
+fn diagnosed(record: &Record) -> Result<Value, Failure> {
+    let diagnosis = record.diagnose(&[], &mut |_| true)?;
+    let axis = axis(&diagnosis.json()?);
+    let conclusion = diagnosis.conclusion().join(" ");
+    Ok(json!({ "verdict": axis["verdict"], "missing": axis["missing"], "conclusion": conclusion }))
+}
+
+/// The five terms of a record.
+fn fitted(record: &Record) -> Result<Value, Failure> {
+    let (document, _) = record.fit(&[])?;
+    let axis = axis(&document);
+    let mut row = json!({});
+    for key in ["invalid", "adequate", "chi2", "dof"] {
+        row[key] = axis[key].clone();
+    }
+    for coefficient in axis["coefficients"].as_array().into_iter().flatten() {
+        let symbol = coefficient["symbol"].as_str().unwrap_or_default();
+        let is_measured = coefficient["state"] == "measured";
+        let measured = |key: &str| match is_measured {
+            true => coefficient[key].clone(),
+            false => Value::Null,
+        };
+        row[symbol] = measured("value");
+        row[format!("{symbol}_lower")] = measured("lower");
+        row[format!("{symbol}_upper")] = coefficient["upper"].clone();
+    }
+    Ok(row)
+}
+
+/// The only axis of a document that the host library has written.
+fn axis(document: &str) -> Value {
+    let document: Value = serde_json::from_str(document).unwrap_or_default();
+    document["axes"][0].clone()
 }
 
 /// The fields of `allan_fit`.

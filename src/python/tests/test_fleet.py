@@ -214,3 +214,15 @@ def test_samples_that_hang_are_told():
     good = allanite.Pieces(rate=200, scale=0.01)
     good.push(samples(0, 0))
     assert fleet.fit(bytes(good))["invalid"] is None
+
+
+def test_an_axis_that_cannot_be_fitted_is_a_row_and_a_wrong_unit_an_error():
+    for counts, said in [([1, 2], "a fit needs two octaves"), ([5] * 5000, "the counts never change")]:
+        pieces = allanite.Pieces(rate=200, scale=0.01)
+        pieces.push(np.array(counts, "i4"))
+        row = fleet.fit(bytes(pieces))
+        assert said in row["invalid"] and "N" not in row and row["samples"] == len(counts)
+        found = fleet.diagnose(bytes(pieces))
+        assert found["verdict"] is None and said in found["conclusion"]
+        with pytest.raises(allanite.AllaniteError, match="furlong"):
+            fleet.fit(bytes(pieces), "furlong")

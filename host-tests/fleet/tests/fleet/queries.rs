@@ -279,3 +279,26 @@ async fn samples_that_hang_are_told() {
         assert!(!hangs || invalid.value(row).contains("stuck values"));
     }
 }
+
+#[tokio::test]
+async fn an_axis_that_cannot_be_fitted_is_a_row_and_a_wrong_unit_an_error() {
+    let session = session(&[], 1, 16).await;
+    let of = |counts: &str, unit: &str| {
+        format!(
+            "SELECT fit['invalid'] AS invalid, fit['N'] AS n, found['conclusion'] AS conclusion FROM (SELECT \
+             allan_fit(state, '{unit}') AS fit, allan_diagnose(state, '{unit}') AS found FROM \
+             (SELECT allan_state(0, {counts}, 200, 0.01) AS state))"
+        )
+    };
+    for (counts, said) in [
+        ("make_array(1, 2)", "a fit needs two octaves"),
+        ("array_repeat(5, 5000)", "the counts never change"),
+    ] {
+        let rows = asked(&session, &of(counts, "deg/s")).await.unwrap();
+        let [invalid, conclusion] = [0, 2].map(|column| rows[0].column(column).as_string::<i32>());
+        assert!(invalid.value(0).contains(said) && conclusion.value(0).contains(said));
+        assert!(rows[0].column(1).is_null(0));
+        let error = asked(&session, &of(counts, "furlong")).await.unwrap_err();
+        assert!(error.to_string().contains("furlong"), "{error}");
+    }
+}

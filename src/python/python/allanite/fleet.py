@@ -155,11 +155,12 @@ def _batch(found: dict[tuple[Any, ...], _States], keys: Sequence[str]) -> pa.Rec
 def fit(state: bytes, unit: str = "deg/s") -> dict[str, Any]:
     """The five terms of a state: the row that ``allan_fit`` gives."""
     pieces = Pieces.from_bytes(state)
-    axis = pieces.record(unit=unit).fit().axes[0]
-    row: dict[str, Any] = {
-        "samples": pieces.samples, "stretches": len(pieces.stretches), "invalid": axis.invalid, "adequate": axis.adequate,
-        "chi2": axis.chi2, "dof": axis.dof,
-    }
+    row: dict[str, Any] = {"samples": pieces.samples, "stretches": len(pieces.stretches)}
+    try:
+        axis = pieces.record(unit=unit).fit().axes[0]
+    except AllaniteError as error:
+        return row | {"invalid": _of_axis(error)}
+    row |= {"invalid": axis.invalid, "adequate": axis.adequate, "chi2": axis.chi2, "dof": axis.dof}
     for coefficient in axis.coefficients:
         observed = coefficient.state == "measured"
         row[coefficient.symbol] = coefficient.value if observed else None
@@ -170,9 +171,20 @@ def fit(state: bytes, unit: str = "deg/s") -> dict[str, Any]:
 
 def diagnose(state: bytes, unit: str = "deg/s") -> dict[str, Any]:
     """The diagnosis of a state: the row that ``allan_diagnose`` gives."""
-    diagnosis = Pieces.from_bytes(state).record(unit=unit).diagnose()
+    try:
+        diagnosis = Pieces.from_bytes(state).record(unit=unit).diagnose()
+    except AllaniteError as error:
+        return {"verdict": None, "missing": None, "conclusion": _of_axis(error)}
     axis = diagnosis.axes[0]
     return {"verdict": axis.verdict, "missing": list(axis.missing), "conclusion": " ".join(diagnosis._conclusion)}
+
+
+def _of_axis(error: AllaniteError) -> str:
+    """Why an axis cannot be fitted, which must not end the query over all others; a wrong unit or damaged bytes do."""
+    _, said, what = str(error).partition("axis gyro: ")
+    if not said:
+        raise error
+    return what
 
 
 def register(context: Any) -> Any:

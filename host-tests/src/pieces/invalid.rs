@@ -79,19 +79,13 @@ impl Pieces {
             end = piece.range().end;
         }
         let samples = self.samples();
-        let mut octaves = self
-            .pieces()
-            .map(|piece| (piece.octave(0), piece.repeats()));
-        let (pairs, repeats, squares) = octaves.try_fold(
-            (0_u64, 0_u64, 0_u128),
-            |all, ((pairs, squares), repeats)| {
-                Some((
-                    all.0 + pairs,
-                    all.1 + repeats,
-                    all.2.saturating_add(squares),
-                ))
-            },
-        )?;
+        let (mut pairs, mut repeats, mut squares) = (0_u64, 0_u64, 0_u128);
+        for piece in self.pieces() {
+            let (number, sum) = piece.octave(0);
+            pairs += number;
+            squares = squares.saturating_add(sum);
+            repeats = repeats.saturating_add(piece.repeats());
+        }
         Some(Whole {
             samples,
             pairs,

@@ -35,25 +35,25 @@ impl Closed {
             return;
         }
         if let Some(number) = self.exact.get_mut(run as usize - 2) {
-            *number += 1;
+            *number = number.saturating_add(1);
         }
         let order = order(run) - 2;
         if order >= self.samples.len() {
             self.samples.resize(order + 1, 0);
         }
-        self.samples[order] += run;
+        self.samples[order] = self.samples[order].saturating_add(run);
     }
 
     fn join(&mut self, other: &Self) {
         self.longest = self.longest.max(other.longest);
         for (own, other) in self.exact.iter_mut().zip(other.exact) {
-            *own += other;
+            *own = own.saturating_add(other);
         }
         if other.samples.len() > self.samples.len() {
             self.samples.resize(other.samples.len(), 0);
         }
         for (own, other) in self.samples.iter_mut().zip(&other.samples) {
-            *own += other;
+            *own = own.saturating_add(*other);
         }
     }
 
@@ -180,6 +180,7 @@ impl Runs {
         self.samples == samples
             && self.ends.iter().all(|&end| (1..=samples).contains(&end))
             && all.longest <= samples
+            && all.exact.iter().all(|&number| number <= samples)
             && all.samples.last().is_none_or(|&of| of > 0)
             && self.closed.samples.last().is_none_or(|&of| of > 0)
             && in_runs.is_some_and(|sum| sum <= samples && sum >= repeats)

@@ -80,8 +80,8 @@ impl Sizes {
         let first = median.map_or(ORDERS, |(order, _)| order + above + 1);
         let beyond = self.orders.get(first..).unwrap_or_default();
         Outliers {
-            number: beyond.iter().map(|(number, _)| number).sum(),
-            squares: beyond.iter().map(|(_, squares)| squares).sum(),
+            number: beyond.iter().fold(0, |sum, one| sum.saturating_add(one.0)),
+            squares: beyond.iter().fold(0, |sum, one| sum.saturating_add(one.1)),
         }
     }
 

@@ -108,7 +108,7 @@ fn no_name_in_a_dropped_log_runs() {
 }
 
 #[test]
-#[ignore = "it takes the better part of an hour"]
+#[ignore = "it takes ten minutes"]
 fn every_log_of_the_corpus_is_answered_by_the_page() {
     let Some(mut page) = Waiting::new() else {
         return;

@@ -36,7 +36,7 @@ fn run() -> io::Result<ExitCode> {
     let target = here.ancestors().nth(2).map(PathBuf::from);
     let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../Cargo.toml");
     let mut build = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-    build.args(["build", "--profile", "quick", "--package", "host-tests"]);
+    build.args(["build", "--package", "host-tests"]);
     build.args(["--bin", "allanite"]).args(options);
     build.arg("--manifest-path").arg(workspace);
     if let Some(target) = target {

@@ -371,16 +371,19 @@ fn every(history: &History, operations: usize, counts: &[i32]) -> usize {
     1 + longer.iter().sum::<usize>()
 }
 
-/// `cargo test -p host-tests --lib every_history -- --include-ignored` also checks those of seven operations.
+/// The module `thorough` checks those of seven operations, too.
 #[test]
 fn every_history_has_the_sums_of_the_definition_and_the_bytes_of_the_whole() {
     histories(5);
 }
 
-#[test]
-#[ignore = "it takes half a minute"]
-fn every_history_of_seven_operations() {
-    histories(7);
+mod thorough {
+    use super::*;
+
+    #[test]
+    fn every_history_of_seven_operations() {
+        histories(7);
+    }
 }
 
 fn histories(operations: usize) {

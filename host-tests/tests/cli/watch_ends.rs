@@ -253,10 +253,13 @@ fn every_end_saves_the_record() {
     end_many(ENDS.len() as u64);
 }
 
-#[test]
-#[ignore = "it takes minutes"]
-fn a_record_is_saved_whatever_ends_it_at_200_moments() {
-    end_many(200);
+mod thorough {
+    use super::*;
+
+    #[test]
+    fn a_record_is_saved_whatever_ends_it_at_200_moments() {
+        end_many(200);
+    }
 }
 
 #[test]

@@ -10,6 +10,7 @@
 
 mod cycle;
 mod import;
+mod promises;
 mod seam;
 mod source;
 

@@ -16,6 +16,7 @@ mod results;
 mod setup;
 mod soak;
 mod step;
+mod study;
 mod supply_chain;
 mod test;
 
@@ -23,7 +24,7 @@ pub use setup::CHROMIUM;
 
 use anyhow::Result;
 use clap::{Parser, Subcommand};
-use firmware::{c_library::Contents, cargo};
+use firmware::c_library::Contents;
 use std::path::PathBuf;
 
 /// Tasks of the project.
@@ -38,8 +39,13 @@ pub struct CommandLine {
 enum Task {
     /// Install what this machine lacks to build, run and test everything.
     Setup,
-    /// Set up, then check and test everything.
-    Test,
+    /// Set up, then check and test what a change can break, in a quarter of an hour.
+    Test {
+        /// Test everything that the project promises, which takes an hour: every core in both precisions, budgets, the package, the
+        /// oldest compiler, injected faults, hostile inputs, fuzzing, Miri, studies and fleets.
+        #[arg(long)]
+        all: bool,
+    },
     /// Run a study behind the README's figures: theory, coefficients, efficiency, calibration, paper,
     /// hidden-effect, confusion, detection, lines, clean, course, thermal, self-test, speed, precision, peers or long.
     Study {
@@ -179,14 +185,8 @@ impl CommandLine {
     pub fn run(self) -> Result<()> {
         match self.task {
             Task::Setup => setup::run(),
-            Task::Test => test::run(),
-            Task::Study { arguments } => {
-                let mut study = cargo();
-                study.args(["run", "--release", "--package", "host-tests"]);
-                study.args(["--no-default-features", "--features", "study"]);
-                study.args(["--bin", "study", "--"]).args(arguments);
-                step::step("the study", &mut study)
-            }
+            Task::Test { all } => test::run(all),
+            Task::Study { arguments } => study::run(&arguments),
             Task::Soak {
                 samples,
                 seed,

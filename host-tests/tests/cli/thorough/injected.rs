@@ -113,7 +113,6 @@ fn names(folder: &Path) -> BTreeSet<String> {
 }
 
 #[test]
-#[ignore = "needs strace, and takes minutes"]
 fn every_failing_call_leaves_the_old_file_or_the_new_one() {
     let folder = TempDir::new().unwrap();
     let folder = folder.path();

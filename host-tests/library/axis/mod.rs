@@ -2,8 +2,6 @@
 //! merged or restored.
 
 mod histories;
-#[path = "../common/seeded.rs"]
-mod seeded;
 mod stored;
 
 use allanite::{

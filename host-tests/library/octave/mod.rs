@@ -4,7 +4,5 @@
 mod definition;
 mod events;
 mod full_scale;
-#[path = "../common/seeded.rs"]
-mod seeded;
 mod sequences;
 mod state;

@@ -11,8 +11,6 @@ mod fifo;
 mod hostile;
 mod pace;
 mod packets;
-#[path = "../common/precision.rs"]
-mod precision;
 mod record;
 mod replay;
 mod sheet;

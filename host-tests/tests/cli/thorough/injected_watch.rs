@@ -135,7 +135,6 @@ fn wrong(folder: &Path, sent: &[Sent], run: &Faulty, fault: &str) -> Option<Stri
 }
 
 #[test]
-#[ignore = "needs strace, and takes minutes"]
 fn no_failing_call_of_watch_loses_a_record() {
     let sent = lines(450, 5);
     let kinds: Vec<(&str, &str)> = CALLS

@@ -2,9 +2,8 @@
 
 mod damage;
 mod long;
-#[path = "../common/ram_flash.rs"]
-mod ram_flash;
 
+use crate::common::ram_flash::{PAGE, PowerCut, RamError, RamFlash};
 use allanite::{
     Accumulator,
     diagnosis::Verdict,
@@ -13,7 +12,6 @@ use allanite::{
     },
 };
 use pollster::block_on;
-use ram_flash::{PAGE, PowerCut, RamError, RamFlash};
 
 const OCTAVES: usize = 13;
 const AXES: u8 = 2;

@@ -1,5 +1,9 @@
 //! The images on every core and the same computation on this host agree to the bit.
 
+use crate::check::{
+    agree_to_the_bit, finds_what_the_host_finds, has_no_path_to_a_panic, keeps_every_place, numbers,
+};
+
 use allanite::{Accumulator, Scale, course::Course};
 use host_tests::{
     curve_file::{AxisCurve, CurveFile},
@@ -26,11 +30,19 @@ use xtask::firmware::{CORES, CORTEX_M4F, Core, Image, Precision, RISCV, agreemen
 #[test]
 fn every_core_and_the_host_agree_to_the_bit() {
     let cores: Vec<Core> = Core::all().collect();
-    cores.par_iter().for_each(|core| {
-        let difference = agreement::difference(core);
-        let difference = difference.unwrap_or_else(|error| panic!("{core}: {error:#}"));
-        assert_eq!(difference, None, "{core}");
-    });
+    cores.par_iter().for_each(agree_to_the_bit);
+}
+
+#[test]
+fn a_whole_product_finds_in_double_precision_what_the_host_finds_to_the_bit() {
+    finds_what_the_host_finds(&CORTEX_M4F.with(Precision::Double));
+}
+
+#[test]
+fn an_interrupt_at_any_instruction_of_the_receiver_loses_no_sample_without_its_place() {
+    [CORES[0], CORTEX_M4F, RISCV]
+        .iter()
+        .for_each(keeps_every_place);
 }
 
 #[test]
@@ -133,27 +145,10 @@ fn images_have_no_path_to_a_panic_with_and_without_checked_arithmetic() {
                 continue;
             }
             for core in Precision::ALL.map(|precision| CORTEX_M4F.with(precision)) {
-                let found = panic_paths(name, &core, profile);
-                assert_eq!(found, [""; 0], "{name}, {core}, {profile}");
+                has_no_path_to_a_panic(name, &core, profile);
             }
         }
     }
-}
-
-#[test]
-fn an_image_that_can_panic_is_detected() {
-    // The logger of this image panics if it is entered twice.
-    let found = panic_paths("characterise", &CORTEX_M4F, "firmware");
-    assert!(
-        found.iter().any(|name| name.contains("rust_begin_unwind")),
-        "{found:?}"
-    );
-}
-
-fn panic_paths(name: &str, core: &Core, profile: &str) -> Vec<String> {
-    Image::build_with(name, core, profile)
-        .and_then(|image| image.panic_paths())
-        .unwrap_or_else(|error| panic!("{error:#}"))
 }
 
 #[test]
@@ -186,52 +181,10 @@ fn image_finds_hidden_effects_as_the_host_does_to_the_bit() {
     }
 }
 
-#[test]
-fn a_whole_product_finds_on_every_core_what_the_host_finds_to_the_bit() {
-    let cores = [
-        CORTEX_M4F,
-        CORTEX_M4F.with(Precision::Double),
-        RISCV.with(Precision::Single),
-    ];
-    for core in cores {
-        let told = |lines: Result<Vec<String>, anyhow::Error>| {
-            lines.unwrap_or_else(|error| panic!("{core}: {error:#}"))
-        };
-        let there = told(agreement::told(&core, "product", &[]));
-        println!("{core}\n{}", there.join("\n"));
-        let here = told(agreement::told_here(core.precision, "product", &[]));
-        assert_eq!(agreement::first_difference(&here, &there), None, "{core}");
-        let starts = |start: &str| there.iter().filter(|line| line.starts_with(start)).count();
-        assert!(starts("look ") >= 3 && starts("covariate ") > 20 && starts("kurtosis ") > 20);
-        assert_eq!(
-            (
-                starts("snapshot "),
-                starts("restored "),
-                starts("invalid None")
-            ),
-            (1, 1, 3)
-        );
-        assert_eq!(starts("added covariate "), 1);
-        let image = Image::build_for("product", &core);
-        let section = image.and_then(|image| image.section_of("::GYRO"));
-        assert_eq!(section.unwrap_or_else(|error| panic!("{error:#}")), ".bss");
-    }
-}
-
 /// The χ² in a line about a fit.
 fn chi_squared(line: &str) -> Option<f64> {
     let (_, rest) = line.split_once(" chi_squared ")?;
     rest.split(' ').next()?.parse().ok()
-}
-
-/// The numbers that follow these words in a line.
-fn numbers<const N: usize>(line: &str, names: [&str; N]) -> [u32; N] {
-    let words: Vec<&str> = line.split([' ', ',']).collect();
-    names.map(|name| {
-        let place = words.iter().position(|word| *word == name);
-        let number = place.and_then(|place| words.get(place + 1)?.parse().ok());
-        number.unwrap_or_else(|| panic!("{line:?} does not contain {name}"))
-    })
 }
 
 #[test]
@@ -283,22 +236,5 @@ fn samples_that_a_late_main_loop_loses_are_counted_and_become_gaps() {
         let octaves = run.lines.iter();
         let there = octaves.filter(|line| line.starts_with("info octave"));
         assert!(there.eq(&here), "{:?}, here {here:?}", run.lines);
-    }
-}
-
-#[test]
-fn an_interrupt_at_any_instruction_of_the_receiver_loses_no_sample_without_its_place() {
-    for core in [CORES[0], CORTEX_M4F, RISCV] {
-        println!("{core}");
-        let run = Image::build_for("race", &core).and_then(|image| run(&image));
-        let run = run.unwrap_or_else(|error| panic!("{error:#}"));
-        println!("{}", run.lines.join("\n"));
-        assert!(run.status.success(), "the image ended with {}", run.status);
-        let total = run.lines.last().expect("a line");
-        let names = ["made", "taken", "lost", "gaps", "empty", "amid"];
-        let [made, taken, lost, gaps, empty, amid] = numbers(total, names);
-        assert_eq!((made, taken + lost), (200_000, made));
-        // The queue was full and empty many times, and many interrupts came within a call of the receiver.
-        assert!(gaps > 1000 && empty > 1000 && amid > 1000, "{total}");
     }
 }

@@ -5,7 +5,6 @@ use super::{
     injected::{CALLS, FAULTS, traced, was_injected},
     watch::{Sent, check_prefix, lines},
 };
-use host_tests::program;
 use std::{
     fs,
     io::Write,

@@ -38,6 +38,7 @@ mod help;
 mod injected;
 mod injected_watch;
 mod known_filter;
+mod lag;
 mod limits;
 mod log;
 mod lost_rows;

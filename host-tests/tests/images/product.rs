@@ -1,6 +1,6 @@
 //! Whole products that survive power cuts.
 
-use host_tests::demonstration::{
+use demonstration::{
     appliance::{BUFFER, CUTS, Cut, EVERY, Gyro, SAMPLES, replay},
     simulated::Random,
 };

@@ -5,6 +5,7 @@ use crate::{
     firmware::{BOARDS, CORTEX_M4F, RISCV, Toolchain, cargo, target_directory, workspace},
     python, setup,
     step::step,
+    study,
 };
 use anyhow::{Context as _, Result};
 use std::{path::PathBuf, process::Command};
@@ -21,7 +22,7 @@ const PACKAGES: [&str; 6] = [
 
 /// The optional parts of the program, to be built without the others, after none of them. `cargo allanite` builds none, so that
 /// code which needs one by mistake would show in the first command of the README only. Two that share no code are built together.
-const OPTIONAL_PARTS: [&str; 5] = ["", "bags,pictures", "tables", "study", "watch"];
+const OPTIONAL_PARTS: [&str; 4] = ["", "bags,pictures", "tables", "watch"];
 
 /// Every feature except double precision.
 const SINGLE: [&str; 2] = ["--features", "async,defmt,storage,flash,overlap"];
@@ -50,7 +51,12 @@ pub(crate) fn run() -> Result<()> {
                 part => format!("lints, of the program with {part} alone"),
             },
             cargo()
-                .args(["clippy", "--package", "host-tests", "--no-default-features"])
+                .args([
+                    "clippy",
+                    "--package",
+                    "allanite-cli",
+                    "--no-default-features",
+                ])
                 .args(["--features", part, "--", "-D", "warnings"]),
         )?;
     }
@@ -94,7 +100,7 @@ pub(crate) fn run() -> Result<()> {
     step(
         "the images on every core, in QEMU",
         cargo()
-            .args(["test", "--package", "host-tests", "--test", "images"])
+            .args(["test", "--package", "allanite-cli", "--test", "images"])
             .arg("every_core::"),
     )?;
     bench::check_budgets()?;
@@ -107,6 +113,7 @@ pub(crate) fn run() -> Result<()> {
             .args(["--exclude", "allanite-python"])
             .args(["--", "--skip", "every_core::"]),
     )?;
+    study::test()?;
     python::run(&[])?;
     println!("\nall passed");
     Ok(())

@@ -3,11 +3,12 @@
 #[cfg(any(feature = "bags", feature = "tables"))]
 use super::converted::Converted;
 #[cfg(feature = "tables")]
+use super::tables;
 use super::{
     Axis, Covariates, Log, Options, csv, npy, part, parts,
     reading::{Watched, read_table},
     source::Format,
-    tables, ulog,
+    ulog,
 };
 #[cfg(feature = "bags")]
 use super::{bag, bag_folder};

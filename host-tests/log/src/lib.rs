@@ -158,7 +158,7 @@ mod ulog_messages;
 mod ulog_topics;
 pub mod unit;
 mod unit_names;
-mod unrest;
+pub mod unrest;
 pub mod visible;
 mod watched;
 mod worker;
@@ -184,7 +184,7 @@ pub use file::{read, read_for_fit, read_for_page, read_in_two, read_part, read_w
 pub use names::TimeUnit;
 pub use names::is_degrees_column;
 pub use octaves::accumulate;
-pub(crate) use places::Places;
+pub use places::Places;
 use serde::{Deserialize, Serialize};
 pub use spectrogram::Spectrogram;
 #[cfg(feature = "tables")]

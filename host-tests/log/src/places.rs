@@ -23,21 +23,21 @@ const LEAST_AMPLITUDE: f64 = 0.15;
 
 /// The rows that repeat the one before, of one stretch without a gap: the longest.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Places {
+pub struct Places {
     repeats: Vec<bool>,
     longest: Vec<bool>,
 }
 
 impl Places {
     /// Adds a row, unless enough of them are known.
-    pub(crate) fn push(&mut self, repeats: bool) {
+    pub fn push(&mut self, repeats: bool) {
         if self.repeats.len() < MOST && self.longest.len() < MOST {
             self.repeats.push(repeats);
         }
     }
 
     /// Marks a place where the next row does not adjoin the one before.
-    pub(crate) fn gap(&mut self) {
+    pub fn gap(&mut self) {
         if self.repeats.len() > self.longest.len() {
             std::mem::swap(&mut self.repeats, &mut self.longest);
         }
@@ -49,7 +49,7 @@ impl Places {
     ///
     /// A sensor of rate ρ that is read at rate 1 gives a new sample in the rows n in which ⌊ρ·n⌋ changes. The others have
     /// a Fourier line at the frequency 1 − ρ, which is their share, with the amplitude sin(π·ρ)/π.
-    pub(crate) fn share(&self, counted: &Repeats) -> Option<f64> {
+    pub fn share(&self, counted: &Repeats) -> Option<f64> {
         let rows = match self.repeats.len() > self.longest.len() {
             true => &self.repeats,
             false => &self.longest,

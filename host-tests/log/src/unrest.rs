@@ -6,7 +6,7 @@
 //! taken from the quieter blocks of the record, so that a touch is not motion.
 
 /// The axes of a sensor.
-pub(crate) const AXES: usize = 3;
+pub const AXES: usize = 3;
 
 /// The products of the axes with each other: xx, xy, xz, yy, yz, zz.
 const PRODUCTS: usize = 6;
@@ -111,7 +111,7 @@ impl Block {
 
 /// The motion of the three axes of a sensor, in octaves and blocks of time.
 #[derive(Clone)]
-pub(crate) struct Unrest {
+pub struct Unrest {
     /// Samples since the last gap.
     number: u64,
     angle: [i64; AXES],
@@ -126,15 +126,22 @@ pub(crate) struct Unrest {
 
 /// Motion that never stopped, in the octave that shows it best.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Found {
+pub struct Found {
     /// Samples in a cluster.
-    pub(crate) cluster: u64,
+    pub cluster: u64,
     /// The share of the variance of their means that is at least due to motion, in percent.
-    pub(crate) percent: u8,
+    pub percent: u8,
+}
+
+impl Default for Unrest {
+    fn default() -> Self {
+        Self::new()
+    }
 }
 
 impl Unrest {
-    pub(crate) fn new() -> Self {
+    /// No samples yet.
+    pub fn new() -> Self {
         Self {
             number: 0,
             angle: [0; AXES],
@@ -147,7 +154,7 @@ impl Unrest {
     }
 
     /// Adds samples that follow each other, of each axis.
-    pub(crate) fn push(&mut self, axes: [&[i32]; AXES]) {
+    pub fn push(&mut self, axes: [&[i32]; AXES]) {
         let rows = axes.map(<[i32]>::len).into_iter().min().unwrap_or(0);
         let mut row = 0;
         while row < rows {
@@ -190,7 +197,7 @@ impl Unrest {
 
     /// Marks a place where so many samples are missing, or an unknown number if it is 0. A short gap is filled with the mean
     /// of 32 samples before, so that single losses do not hide the slow parts.
-    pub(crate) fn gap(&mut self, missing: u64) {
+    pub fn gap(&mut self, missing: u64) {
         if (1..=LONGEST_FILLED).contains(&missing) && self.number >= WINDOW {
             let newest = self.number >> WINDOW_LEVEL;
             let ring = &self.levels[WINDOW_LEVEL];
@@ -232,7 +239,7 @@ impl Unrest {
 
     /// Motion that never stopped, of a record with this rate in Hz and with these units per count. `per_degree` is that of
     /// 1 °/s in such units, if they are known.
-    pub(crate) fn found(
+    pub fn found(
         &self,
         rate_hz: f64,
         units: [f64; AXES],

@@ -1,7 +1,8 @@
 //! The files that a lot is written to.
 
 #[cfg(feature = "tables")]
-use super::{csv, judgement::Judged, page, parquet, table};
+use super::parquet;
+use super::{csv, judgement::Judged, page, table};
 use crate::command::output::file::OutputFile;
 use allanite_log::failure::{Failure, Place};
 use std::{

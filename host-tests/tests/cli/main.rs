@@ -36,6 +36,7 @@ mod faults;
 mod formats;
 mod help;
 mod known_filter;
+mod lag;
 mod limits;
 mod log;
 mod lost_rows;

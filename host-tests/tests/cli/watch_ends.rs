@@ -1,7 +1,6 @@
 //! Whatever ends `watch`, and at whatever moment, its record holds what was received more than a second before.
 
 use super::watch::{Sent, check_prefix, lines};
-use host_tests::program;
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use serialport::{SerialPort, TTYPort};

@@ -1,15 +1,7 @@
 //! The interface for C: its header, a product in C on this host and in QEMU, and calls with hostile arguments.
 
 use std::{fs, process::Command};
-use xtask::firmware::{
-    CORES, CORTEX_M4F, RISCV,
-    agreement::first_difference,
-    c_library::{
-        Contents, build_for_target, folder, host_library, host_program, library, package,
-        rust_example, target_program,
-    },
-    image::flash_of,
-};
+use xtask::firmware::c_library::{Contents, folder, host_library, host_program, package};
 
 /// Makes the header anew if this variable is set.
 const RENEW: &str = "ALLANITE_RENEW_HEADER";

@@ -1,7 +1,7 @@
 //! Whole products that survive power cuts.
 
-use host_tests::demonstration::{
-    appliance::{BUFFER, CUTS, Cut, EVERY, Gyro, SAMPLES, replay},
+use demonstration::{
+    appliance::{BUFFER, Cut, EVERY, Gyro, SAMPLES, replay},
     simulated::Random,
 };
 use xtask::firmware::{

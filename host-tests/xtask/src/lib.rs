@@ -19,6 +19,7 @@ mod step;
 mod study;
 mod supply_chain;
 mod test;
+pub mod watch;
 
 pub use setup::CHROMIUM;
 
@@ -51,6 +52,15 @@ enum Task {
     Study {
         /// The study and its options; `--help` lists them.
         #[arg(trailing_var_arg = true, allow_hyphen_values = true, required = true)]
+        arguments: Vec<String>,
+    },
+    /// Watch a gyro that an image simulates in QEMU, with `allanite watch`.
+    Watch {
+        /// The program `allanite` to watch with; without it, it is built.
+        #[arg(long, value_name = "PROGRAM")]
+        program: Option<PathBuf>,
+        /// Arguments for `watch`, such as `--rate 100 --scale 0.00763`.
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         arguments: Vec<String>,
     },
     /// Accumulate samples with gaps, snapshots, power cuts and merges at random, and compare every sum with its
@@ -187,6 +197,7 @@ impl CommandLine {
             Task::Setup => setup::run(),
             Task::Test { all } => test::run(all),
             Task::Study { arguments } => study::run(&arguments),
+            Task::Watch { program, arguments } => watch::run_watch(program.as_deref(), &arguments),
             Task::Soak {
                 samples,
                 seed,

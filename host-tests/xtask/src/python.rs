@@ -27,7 +27,7 @@ const PARTS: [&str; 5] = [
     "allanite-python",
     "--no-default-features",
     "--features",
-    "host-tests/bags,host-tests/tables",
+    "allanite-cli/bags,allanite-cli/tables",
 ];
 
 /// Builds the wheel, installs it, and runs its tests. `arguments` go to pytest.
@@ -88,7 +88,7 @@ pub(crate) fn run(arguments: &[String]) -> Result<()> {
     step(
         "Python: the program to compare with",
         cargo()
-            .args(["build", "--package", "host-tests"])
+            .args(["build", "--package", "allanite-cli"])
             .args(["--bin", "allanite"])
             .args(PARTS),
     )?;

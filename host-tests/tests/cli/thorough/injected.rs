@@ -1,7 +1,7 @@
 //! Every call of the system that a command makes may fail, and the command may be killed at any of them: its output is then the
 //! file that was there or the new one, and never anything else.
 
-use host_tests::program::command;
+use program::command;
 use std::{
     collections::BTreeSet,
     fs,

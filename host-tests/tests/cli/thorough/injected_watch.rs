@@ -1,11 +1,8 @@
 //! Every call of the system that `watch` makes may fail, and it may be killed at any of them: what was received more than a second
 //! before is in its record.
 
-use super::{
-    injected::{CALLS, FAULTS, traced, was_injected},
-    watch::{Sent, check_prefix, lines},
-};
-use host_tests::program;
+use super::injected::{CALLS, FAULTS, traced, was_injected};
+use crate::watch::{Sent, check_prefix, lines};
 use std::{
     fs,
     io::Write,

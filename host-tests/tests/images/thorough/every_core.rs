@@ -5,27 +5,26 @@ use crate::check::{
 };
 
 use allanite::{Accumulator, Scale, course::Course};
-use host_tests::{
-    curve_file::{AxisCurve, CurveFile},
-    demonstration::{
-        AMPLITUDES,
-        diagnose::{HIDDEN, Hidden},
-        lines,
-        simulated::SimulatedGyro,
-        stream::SEED,
-    },
-    log::{Axis, Evidence, SpectrumSums},
-    program::command,
-    study::precision,
-    unit::Unit,
+use allanite_host::curve_file::{AxisCurve, CurveFile};
+use allanite_log::{Axis, Evidence, SpectrumSums, unit::Unit};
+use demonstration::{
+    AMPLITUDES,
+    diagnose::{HIDDEN, Hidden},
+    lines,
+    simulated::SimulatedGyro,
+    stream::SEED,
 };
+use program::command;
 use rayon::prelude::*;
 use std::{
     process::{Command, Stdio},
     thread,
     time::{Duration, Instant},
 };
-use xtask::firmware::{CORES, CORTEX_M4F, Core, Image, Precision, RISCV, agreement, run};
+use xtask::{
+    firmware::{CORES, CORTEX_M4F, Core, Image, Precision, RISCV, agreement, run},
+    watch::Watched,
+};
 
 #[test]
 fn every_core_and_the_host_agree_to_the_bit() {
@@ -50,13 +49,14 @@ fn interrupted_watch_of_an_image_saves_the_curve_of_what_the_image_sent() {
     let folder = tempfile::tempdir().expect("a folder");
     let curve = folder.path().join("curve.json");
     for milliseconds in [0, 137, 611] {
-        let watch = ["watch", "--image", "--rate", "100", "--axes", "image"];
-        let watch = command(folder.path(), &watch)
+        let watch = ["watch", "--rate", "100", "--axes", "image"];
+        let mut watch = command(folder.path(), &watch);
+        watch
             .args(["--save-every", "0.2", "--output"])
             .arg(&curve)
-            .stdout(Stdio::null())
-            .spawn();
-        let mut watch = watch.expect("the command line");
+            .stdout(Stdio::null());
+        let mut watched = Watched::start(&mut watch).expect("the image and the command line");
+        let watch = &mut watched.watch;
         let begun = Instant::now();
         while !curve.exists() {
             assert!(watch.try_wait().is_ok_and(|status| status.is_none()));
@@ -99,19 +99,6 @@ fn interrupted_watch_of_an_image_saves_the_curve_of_what_the_image_sent() {
         assert!(samples > 100, "{samples}");
         assert_eq!(saved.axes, [sent], "after {samples} samples");
         std::fs::remove_file(&curve).expect("a file");
-    }
-}
-
-#[test]
-fn single_and_double_precision_reach_the_same_result() {
-    let fits = precision::fits(4).unwrap_or_else(|error| panic!("{error:#}"));
-    assert!(fits.standard_errors.len() > 4 * 4);
-    let largest = |sorted: &[f64]| sorted.last().copied().unwrap_or(f64::NAN);
-    assert!(largest(&fits.standard_errors) < 2e-3, "{fits:?}");
-    assert!(largest(&fits.chi_squared) < 2e-3, "{fits:?}");
-    let diagnoses = precision::diagnoses(2).unwrap_or_else(|error| panic!("{error:#}"));
-    for (name, alike) in diagnoses {
-        assert_eq!((alike.records, alike.same), (2, 2), "{name}");
     }
 }
 

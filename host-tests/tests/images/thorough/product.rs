@@ -1,7 +1,7 @@
 //! Images of whole products lose nothing to power cuts.
 
 use crate::product::{check, there};
-use host_tests::demonstration::appliance::{CUTS, SAMPLES};
+use demonstration::appliance::{CUTS, SAMPLES};
 use rayon::prelude::*;
 
 /// The images, each with a seed of its power cuts, and another one for the run with the watchdog's reset.

@@ -20,7 +20,7 @@ const PACKAGES: [&str; 6] = [
 
 /// The optional parts of the program, each to be built without the others. `cargo allanite` builds none, so that code which needs one by
 /// mistake would show in the first command of the README only. Two that share no code are built together.
-const OPTIONAL_PARTS: [&str; 4] = ["bags,pictures", "tables", "study", "watch"];
+const OPTIONAL_PARTS: [&str; 3] = ["bags,pictures", "tables", "watch"];
 
 /// Every feature except double precision.
 pub(crate) const SINGLE: [&str; 2] = ["--features", "async,defmt,storage,flash,overlap"];
@@ -90,7 +90,12 @@ fn format() -> Result<()> {
 fn part(features: &str) -> Result<()> {
     command(
         cargo()
-            .args(["clippy", "--package", "host-tests", "--no-default-features"])
+            .args([
+                "clippy",
+                "--package",
+                "allanite-cli",
+                "--no-default-features",
+            ])
             .args(["--features", features, "--", "-D", "warnings"]),
     )
 }

@@ -29,6 +29,7 @@ pub(crate) fn run(stages: &mut Stages) -> Result<()> {
         })?;
     }
     stages.run("Miri", || miri::miri(MIRI_SEEDS))?;
+    stages.run("studies", study::test)?;
     for arguments in STUDIES {
         stages.run(&format!("the study {}", arguments[0]), || {
             study::run(arguments)

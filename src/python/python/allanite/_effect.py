@@ -14,7 +14,7 @@ from ._error import AllaniteError
 
 @dataclass(frozen=True)
 class Effect:
-    """An effect of the catalogue. Use one of the classes below it: ``Sinusoid(47)``.
+    """What every class of an effect has, such as ``Sinusoid``.
 
     Attributes
     ----------

@@ -9,6 +9,7 @@ mod arrays;
 mod comparison;
 mod diagnosis;
 mod error;
+mod options;
 mod own;
 mod pieces;
 mod record;
@@ -31,5 +32,5 @@ mod _native {
     #[pymodule_export]
     use super::pieces::Pieces;
     #[pymodule_export]
-    use super::record::{Record, deviations};
+    use super::record::{Record, deviations, explained};
 }

@@ -6,12 +6,12 @@ use super::{
     question::{Question, with},
     shell,
 };
-use crate::command::{
+use crate::command::output::drawn_frame::{self, DrawnFrame};
+use allanite::{Coefficient, Comparison, fit::State};
+use allanite_host::{
     diagnose::words::{disagreement, shown_p},
     fit::table::state,
-    output::drawn_frame::{self, DrawnFrame},
 };
-use allanite::{Coefficient, Comparison, fit::State};
 use allanite_host::{number::number, units, words};
 use allanite_log::{BINS, OCTAVES, unit::Unit};
 use allanite_plot::{Figure, Frame};

@@ -18,6 +18,14 @@ pub const NOT_STATIONARY: &str = "not_stationary";
 /// What the verdict of such a record begins with, in words.
 pub const NOT_STATIONARY_IN_WORDS: &str = "not stationary";
 
+/// What events during a record mean for its coefficients.
+pub const MIXTURE: &str = "the record is not stationary: its coefficients are those of a mixture, so leave out the disturbed part or record again";
+
+/// That other effects would do as well as the one that was chosen.
+pub fn ambiguous(others: &str) -> String {
+    format!("ambiguous, {others} would explain the record about as well")
+}
+
 /// The verdict of a fit in a word or two: whether its model explains the record; `None` if the record does not tell.
 pub const fn word(adequate: Option<bool>) -> &'static str {
     match adequate {

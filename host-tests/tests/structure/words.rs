@@ -69,7 +69,7 @@ impl<'ast> Visit<'ast> for Strings {
     }
 }
 
-/// The phrases in the lines of other files, which are not comments or documentation.
+/// The phrases in other files: in the strings of code, and in all text of pages. Comments and documentation do not count.
 pub(crate) fn others(files: &Files) -> Vec<String> {
     let mut found = Vec::new();
     for (name, text) in files {
@@ -82,7 +82,12 @@ pub(crate) fn others(files: &Files) -> Vec<String> {
                 .iter()
                 .any(|begin| line.trim_start().starts_with(begin));
             if is_said && !is_comment {
-                found.extend(phrases(line).map(|phrase| format!("{name}: {phrase:?}")));
+                let strings = line.split(['"', '\'', '`']).skip(1).step_by(2);
+                let said = match name.ends_with(".html") {
+                    true => line.to_owned(),
+                    false => strings.collect::<Vec<_>>().join("\n"),
+                };
+                found.extend(phrases(&said).map(|phrase| format!("{name}: {phrase:?}")));
             }
         }
     }

@@ -11,7 +11,7 @@ use std::sync::atomic::{AtomicU8, Ordering};
 /// keep a limit passes, and what is known to exceed one fails (ISO 14253-1).
 #[derive(Clone, Copy, Serialize)]
 #[serde(rename_all = "snake_case")]
-enum Verdict {
+enum Conformity {
     /// The 95 % interval keeps the limit.
     Pass,
     /// The interval contains the limit, or the coefficient is not observable in this record.
@@ -24,7 +24,7 @@ enum Verdict {
     Fail,
 }
 
-impl Verdict {
+impl Conformity {
     const fn words(self) -> &'static str {
         match self {
             Self::Pass => "pass",
@@ -43,7 +43,7 @@ pub struct Judged {
     symbol: &'static str,
     most: f64,
     unit: String,
-    verdict: Verdict,
+    verdict: Conformity,
 }
 
 impl Judged {
@@ -63,11 +63,11 @@ impl Judged {
             let most = limit.of_unit(unit)?.value;
             let (lower, upper) = (found.lower, found.upper);
             let verdict = match fit.is_adequate() {
-                _ if !is_valid => Verdict::Invalid,
-                Some(false) => Verdict::Misfit,
-                _ if lower > most => Verdict::Fail,
-                _ if upper <= most => Verdict::Pass,
-                _ => Verdict::GuardBand,
+                _ if !is_valid => Conformity::Invalid,
+                Some(false) => Conformity::Misfit,
+                _ if lower > most => Conformity::Fail,
+                _ if upper <= most => Conformity::Pass,
+                _ => Conformity::GuardBand,
             };
             Ok(Self {
                 effect: found.name,
@@ -103,11 +103,11 @@ impl Worst {
     /// [`Failure::Limit`] if an axis does not pass.
     pub fn end(&self) -> Result<(), Failure> {
         let worst = self.0.load(Ordering::Relaxed);
-        if worst == Verdict::Pass as u8 {
+        if worst == Conformity::Pass as u8 {
             return Ok(());
         }
         Err(Failure::Limit {
-            is_exceeded: worst == Verdict::Fail as u8,
+            is_exceeded: worst == Conformity::Fail as u8,
         })
     }
 }

@@ -317,7 +317,7 @@ fn every(history: &History, operations: usize, counts: &[i32]) -> usize {
     1 + longer.iter().sum::<usize>()
 }
 
-/// `cargo test -p host-tests --lib every_history -- --include-ignored` also checks those of seven operations.
+/// `cargo test -p allanite-log --lib every_history -- --include-ignored` also checks those of seven operations.
 #[test]
 fn every_history_has_the_sums_of_the_definition_and_the_bytes_of_the_whole() {
     histories(5);

@@ -10,7 +10,7 @@ use allanite::{
 use allanite_host::{
     number::{duration, number, probability},
     units,
-    verdict::certified,
+    verdict::{ambiguous, certified},
     words,
 };
 use allanite_log::unit::Unit;
@@ -124,9 +124,9 @@ fn findings(axis: &AxisCertificate, unit: Unit) -> Vec<String> {
     for group in found.doubts.chunk_by(|a, b| a.effect == b.effect) {
         let others = group.iter().map(|doubt| doubt.other.name());
         lines.push(format!(
-            "{}: ambiguous, {} would explain the record about as well",
+            "{}: {}",
             words::plain(group[0].effect.name()),
-            words::alternatives(others),
+            ambiguous(&words::alternatives(others)),
         ));
     }
     for band in &found.bands {

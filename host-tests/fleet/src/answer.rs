@@ -4,8 +4,9 @@ use crate::{
     arguments::coerced,
     failure::{raised, refused},
 };
-use allanite_cli::command::interface::Record;
-use allanite_log::{failure::Failure, pieces::Pieces};
+use allanite::fit::State;
+use allanite_host::interface::{Record, options::{Fitting, Search}};
+use allanite_log::{failure::Failure, pieces::Pieces, unit::Unit};
 use datafusion::{
     arrow::{
         array::{
@@ -120,18 +121,22 @@ impl Question {
         })?;
         let stretches = pieces.stretches().count();
         let axes = [(AXIS.to_owned(), pieces)];
-        let record = Record::of_pieces(&axes, &[format!("--unit={unit}")]);
-        let found = record.and_then(|record| match self {
+        let unit = Unit::from_name(unit).ok_or_else(|| {
+            let names = Unit::ALL.map(Unit::name).join(", ");
+            refused(format!("there is no unit {unit:?}"), &format!("choose from {names}"))
+        })?;
+        let found = Record::of_pieces(&axes, unit).and_then(|record| match self {
             Self::Diagnosis => diagnosed(&record),
             _ => fitted(&record),
         });
         let mut row = match found {
             Ok(row) => row,
-            // An axis that cannot be fitted must not end the query over all others; a wrong unit does.
-            Err(failure) => match failure.to_string().split_once(&format!("axis {AXIS}: ")) {
-                Some((_, what)) => json!({ "invalid": what, "conclusion": what }),
-                None => return Err(raised(failure)),
-            },
+            // An axis that cannot be fitted must not end the query over all others.
+            Err(Failure::Axis { what, remedy, .. }) => {
+                let why = format!("{what}; {remedy}");
+                json!({ "invalid": why, "conclusion": why })
+            }
+            Err(failure) => return Err(raised(failure)),
         };
         row["samples"] = samples.into();
         row["stretches"] = stretches.into();
@@ -150,43 +155,42 @@ impl Question {
     }
 }
 
-/// The name of the axis, which begins what is said of it.
+/// The name of the axis.
 const AXIS: &str = "gyro";
 
 /// The diagnosis of a record.
 fn diagnosed(record: &Record) -> Result<Value, Failure> {
-    let diagnosis = record.diagnose(&[], &mut |_| true)?;
-    let axis = axis(&diagnosis.json()?);
-    let conclusion = diagnosis.conclusion().join(" ");
-    Ok(json!({ "verdict": axis["verdict"], "missing": axis["missing"], "conclusion": conclusion }))
-}
-
-/// The five terms of a record.
-fn fitted(record: &Record) -> Result<Value, Failure> {
-    let (document, _) = record.fit(&[])?;
-    let axis = axis(&document);
-    let mut row = json!({});
-    for key in ["invalid", "adequate", "chi2", "dof"] {
-        row[key] = axis[key].clone();
-    }
-    for coefficient in axis["coefficients"].as_array().into_iter().flatten() {
-        let symbol = coefficient["symbol"].as_str().unwrap_or_default();
-        let is_measured = coefficient["state"] == "measured";
-        let measured = |key: &str| match is_measured {
-            true => coefficient[key].clone(),
-            false => Value::Null,
-        };
-        row[symbol] = measured("value");
-        row[format!("{symbol}_lower")] = measured("lower");
-        row[format!("{symbol}_upper")] = coefficient["upper"].clone();
+    let diagnosis = record.diagnose(&Search::default(), &mut |_| true)?;
+    let mut row = json!({ "conclusion": diagnosis.conclusion().join(" ") });
+    if let Some(axis) = diagnosis.document().axes.first() {
+        row["verdict"] = axis.verdict.into();
+        row["missing"] = json!(axis.missing);
     }
     Ok(row)
 }
 
-/// The only axis of a document that the host library has written.
-fn axis(document: &str) -> Value {
-    let document: Value = serde_json::from_str(document).unwrap_or_default();
-    document["axes"][0].clone()
+/// The five terms of a record.
+fn fitted(record: &Record) -> Result<Value, Failure> {
+    let fits = record.fit(&Fitting::default())?;
+    let mut row = json!({});
+    let document = fits.document();
+    let Some(axis) = document.axes.first() else {
+        return Ok(row);
+    };
+    row["invalid"] = json!(axis.invalid);
+    row["adequate"] = json!(axis.adequate);
+    row["chi2"] = json!(axis.chi2);
+    row["dof"] = json!(axis.dof);
+    for term in &axis.coefficients {
+        let measured = |value: f64| match term.state {
+            State::Measured => json!(value),
+            _ => Value::Null,
+        };
+        row[term.symbol] = measured(term.value);
+        row[format!("{}_lower", term.symbol)] = measured(term.lower);
+        row[format!("{}_upper", term.symbol)] = json!(term.upper);
+    }
+    Ok(row)
 }
 
 /// The fields of `allan_fit`.

@@ -244,10 +244,7 @@ impl AxisCurve {
     /// When a sum exceeds 128 bits, which takes days of full-scale input.
     pub fn of(axis: &log::Axis, rate_hz: f64, unit: Unit) -> Result<Self, Failure> {
         let fail = |what: String| {
-            Failure::option(
-                format!("axis {}: {what}", axis.name),
-                "check the scale and the sensor",
-            )
+            Place::default().axis_failure(&axis.name, what, "check the scale and the sensor")
         };
         let scale =
             Scale::new(axis.rate_per_count, rate_hz).map_err(|error| fail(error.to_string()))?;

@@ -2,16 +2,30 @@
 //! simulator of gyros.
 
 pub mod comb;
+pub mod compare;
 pub mod confidence;
 pub mod curve_file;
 pub mod dependence;
+pub mod diagnose;
 pub mod diagnosis;
+pub mod disturbance;
+pub mod effect_argument;
 pub mod equivalent;
+pub mod event_json;
+pub mod fit;
+pub mod interface;
+pub mod known_filter;
+pub mod limit;
 pub mod lot;
+pub mod model_json;
 pub mod number;
 pub mod overbound;
 pub mod quantile;
+pub mod record;
+pub mod rounding;
 pub mod simulate;
 pub mod stationarity;
+pub mod tried;
 pub mod units;
+pub mod verdict;
 pub mod words;

@@ -1,6 +1,9 @@
 //! Whether the record is stationary: what happened during it, and what that did to the coefficients.
 
-use crate::words::{self, damage};
+use crate::{
+    verdict,
+    words::{self, damage},
+};
 use allanite::{
     Curve, Error, Model, Scale,
     course::{Course, Event, What, analyse_without},
@@ -10,9 +13,6 @@ use allanite_log::unit::Unit;
 
 /// A change of the noise by less than this share of it changes the coefficients by no more. Chosen by hand.
 const SLIGHT: f64 = 0.05;
-
-/// What events mean for the coefficients.
-const NOT_STATIONARY: &str = "the record is not stationary: its coefficients are those of a mixture, so leave out the disturbed part or record again";
 
 /// What happened during a record.
 #[derive(Default)]
@@ -88,7 +88,7 @@ impl Stationarity {
             .map(|event| words::event(event, unit))
             .collect();
         if self.is_disturbed() {
-            notes.push(NOT_STATIONARY.into());
+            notes.push(verdict::MIXTURE.into());
         }
         if let Some(Shifted {
             model,

@@ -3,6 +3,7 @@
 use super::{
     number::{duration, number, rounded_up, two_digits},
     units,
+    verdict::ADEQUATE_MODEL,
 };
 use allanite::{
     Coefficient, Model, Term,
@@ -244,7 +245,7 @@ pub fn alias(term: &Term, rate_hz: f64) -> Option<String> {
 pub fn widened(fit: &Fit) -> Option<String> {
     (fit.birge_ratio > 1.0).then(|| {
         let factor = number(fit.birge_ratio);
-        format!("The intervals are {factor} times as wide as those of an adequate model: √(χ²/degrees of freedom).")
+        format!("The intervals are {factor} times as wide as those of {ADEQUATE_MODEL}: √(χ²/degrees of freedom).")
     })
 }
 

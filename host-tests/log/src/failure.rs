@@ -20,6 +20,19 @@ pub enum Failure {
         /// What to do about it.
         remedy: String,
     },
+    /// An axis of a record that cannot be measured or fitted, whereas others may. It is printed as
+    /// `FILE: axis NAME: what; remedy`.
+    #[error("{place}axis {axis}: {what}; {remedy}")]
+    Axis {
+        /// The record.
+        place: Place,
+        /// The name of the axis.
+        axis: String,
+        /// What is wrong.
+        what: String,
+        /// What to do about it.
+        remedy: String,
+    },
     /// A coefficient is not known to keep its limit. What was found is printed, and the command ends without a message.
     #[error("a limit is not kept")]
     Limit {
@@ -74,6 +87,21 @@ impl Place {
         }
     }
 
+    /// The failure of an axis of the record at this place.
+    pub fn axis_failure(
+        self,
+        axis: &str,
+        what: impl fmt::Display,
+        remedy: impl fmt::Display,
+    ) -> Failure {
+        Failure::Axis {
+            place: self,
+            axis: one_line(axis),
+            what: one_line(&what.to_string()),
+            remedy: one_line(&remedy.to_string()),
+        }
+    }
+
     /// The failure of opening, reading or writing the file at this place.
     pub fn io(self, error: &io::Error) -> Failure {
         let (what, remedy) = match error.kind() {
@@ -120,27 +148,24 @@ impl Failure {
                 what,
                 remedy,
             } => place.failure(format!("{what}, and {more}"), remedy),
+            Self::Axis {
+                place,
+                axis,
+                what,
+                remedy,
+            } => place.axis_failure(&axis, format!("{what}, and {more}"), remedy),
             Self::Closed | Self::Limit { .. } => self,
         }
     }
 
     /// The same failure in another file, if it is in this one.
-    pub fn moved(self, from: &Path, to: &Path) -> Self {
-        match self {
-            Self::Input {
-                place,
-                what,
-                remedy,
-            } if place.file.as_deref() == Some(from) => Self::Input {
-                place: Place {
-                    file: Some(to.to_owned()),
-                    ..place
-                },
-                what,
-                remedy,
-            },
-            other => other,
+    pub fn moved(mut self, from: &Path, to: &Path) -> Self {
+        if let Self::Input { place, .. } | Self::Axis { place, .. } = &mut self
+            && place.file.as_deref() == Some(from)
+        {
+            place.file = Some(to.to_owned());
         }
+        self
     }
 
     /// What was found, with its row and without the file and the remedy.
@@ -150,6 +175,7 @@ impl Failure {
                 Some(row) => format!("row {row}: {what}"),
                 None => what.clone(),
             },
+            Self::Axis { axis, what, .. } => format!("axis {axis}: {what}"),
             Self::Closed | Self::Limit { .. } => self.to_string(),
         }
     }

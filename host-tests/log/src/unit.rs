@@ -35,7 +35,8 @@ pub enum Unit {
 }
 
 impl Unit {
-    const ALL: [Self; 4] = [
+    /// All of them.
+    pub const ALL: [Self; 4] = [
         Self::DegreesPerSecond,
         Self::RadiansPerSecond,
         Self::MetresPerSecondSquared,

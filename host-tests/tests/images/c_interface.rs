@@ -25,7 +25,7 @@ fn the_header_is_that_of_the_source() {
     let committed = fs::read_to_string(&path).unwrap_or_default();
     assert!(
         committed == made,
-        "the header is out of date: {RENEW}=1 cargo test -p host-tests --test images c_interface"
+        "the header is out of date: {RENEW}=1 cargo test -p allanite-cli --test images c_interface"
     );
 }
 

@@ -50,7 +50,7 @@ pub(crate) fn python(files: &Files, package: &str) -> Graph {
                     .map_or(of, |rest| if rest.is_empty() { "." } else { rest });
                 match of.strip_prefix('.') {
                     Some("") => {
-                        names.extend(what.trim_matches(['(', ')']).split(',').map(first_word))
+                        names.extend(what.trim_matches(['(', ')']).split(',').map(first_word));
                     }
                     Some(module) => _ = names.insert(module.to_owned()),
                     None => {}

@@ -1,7 +1,7 @@
 //! Samples that arrive while Python runs.
 
-use crate::{error::raised, record::Record};
-use allanite_cli::command::interface::Recording;
+use crate::{error::raised, options, record::Record};
+use allanite_host::interface::Recording;
 use numpy::PyReadonlyArray1;
 use pyo3::{exceptions::PyValueError, prelude::*};
 use std::sync::{Mutex, PoisonError};
@@ -14,7 +14,9 @@ pub(crate) struct Accumulator(Mutex<Recording>);
 impl Accumulator {
     #[new]
     fn new(options: Vec<String>) -> PyResult<Self> {
-        let recording = Recording::new(&options).map_err(raised)?;
+        let recording = options::sensor(options)
+            .and_then(Recording::new)
+            .map_err(raised)?;
         Ok(Self(Mutex::new(recording)))
     }
 

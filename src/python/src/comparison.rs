@@ -1,7 +1,7 @@
 //! Models beside a record.
 
 use crate::error::raised;
-use allanite_cli::command::interface;
+use allanite_host::interface;
 use pyo3::prelude::*;
 
 /// A model that was fitted to an axis.

@@ -3,10 +3,11 @@
 use crate::{
     comparison::Comparison,
     error::raised,
+    options,
     own::{self, OwnEffect},
     watched::left,
 };
-use allanite_cli::command::interface;
+use allanite_host::interface;
 use pyo3::prelude::*;
 use std::sync::Arc;
 
@@ -44,7 +45,8 @@ impl Diagnosis {
 
     /// The picture of `plot`.
     fn svg(&self, options: Vec<String>) -> PyResult<String> {
-        self.0.svg(&options).map_err(raised)
+        let shown = options::shown(options).map_err(raised)?;
+        self.0.svg(&shown).map_err(raised)
     }
 
     /// Fits another model to an axis.
@@ -56,8 +58,9 @@ impl Diagnosis {
         own: Vec<Py<OwnEffect>>,
     ) -> PyResult<Comparison> {
         let (diagnosis, effects) = (self.0.clone(), own::effects(&own));
+        let model = options::model(options).map_err(raised)?;
         let compared = left(py, None, move |_| {
-            diagnosis.compare(&axis, &options, &effects)
+            diagnosis.compare(&axis, &model, &effects)
         });
         own::checked(&own, compared.map(Comparison::new))
     }

@@ -1,7 +1,7 @@
 //! Effects of the catalogue.
 
 use crate::error::raised;
-use allanite_cli::command::interface;
+use allanite_host::interface;
 use pyo3::prelude::*;
 
 /// Reads an effect as the command line does, and raises what it would refuse.

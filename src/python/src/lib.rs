@@ -10,6 +10,7 @@ mod comparison;
 mod diagnosis;
 mod effect;
 mod error;
+mod options;
 mod own;
 mod pieces;
 mod record;
@@ -34,5 +35,5 @@ mod _native {
     #[pymodule_export]
     use super::pieces::Pieces;
     #[pymodule_export]
-    use super::record::{Record, deviations};
+    use super::record::{Record, deviations, explained};
 }

@@ -1,7 +1,7 @@
 //! Records that are read in pieces.
 
-use crate::{error::raised, record::Record};
-use allanite_cli::command::interface;
+use crate::{error::raised, options, record::Record};
+use allanite_host::interface;
 use allanite_log::pieces::{Gathered, Pieces as State};
 use numpy::PyReadonlyArray1;
 use pyo3::{prelude::*, types::PyBytes};
@@ -81,13 +81,14 @@ impl Pieces {
         axes: Vec<(String, Py<Pieces>)>,
         options: Vec<String>,
     ) -> PyResult<Record> {
+        let unit = options::unit(options).map_err(raised)?;
         let record = py.detach(|| {
             let own = |(axis, pieces): (String, Py<Self>)| {
                 let state = pieces.get().state().pieces().clone();
                 (axis, state)
             };
             let axes: Vec<(String, State)> = axes.into_iter().map(own).collect();
-            interface::Record::of_pieces(&axes, &options)
+            interface::Record::of_pieces(&axes, unit)
         });
         record.map(Record::of).map_err(raised)
     }

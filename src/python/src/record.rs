@@ -5,11 +5,12 @@ use crate::{
     comparison::Comparison,
     diagnosis::Diagnosis,
     error::raised,
+    options,
     own::{self, OwnEffect},
     table::Batches,
     watched::{left, watched},
 };
-use allanite_cli::command::interface;
+use allanite_host::{interface, verdict};
 use allanite_log::{Arrays, Column};
 use pyo3::{prelude::*, types::PyBytes};
 use std::{
@@ -31,8 +32,9 @@ impl Record {
         options: Vec<String>,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Self> {
+        let reading = options::reading(options).map_err(raised)?;
         let record = left(py, progress.as_ref(), move |bar| {
-            interface::Record::read(&path, &options, bar)
+            interface::Record::read(&path, &reading, bar)
         })?;
         Ok(Self(Arc::new(record)))
     }
@@ -50,7 +52,7 @@ impl Record {
         let lent = lent.collect::<PyResult<Vec<_>>>()?;
         let rows = lent.iter().map(Lent::rows).min().unwrap_or(0);
         let columns = lent.iter().map(Lent::column).collect();
-        Self::of_columns(py, (name, rows, columns), &options, progress.as_ref())
+        Self::of_columns(py, (name, rows, columns), options, progress.as_ref())
     }
 
     /// Reads a table that an object exports through `__arrow_c_stream__`, whose buffers are not copied.
@@ -64,7 +66,7 @@ impl Record {
     ) -> PyResult<Self> {
         let batches = Batches::of(table)?;
         let table = (name, batches.rows(), batches.columns());
-        Self::of_columns(py, table, &options, progress.as_ref())
+        Self::of_columns(py, table, options, progress.as_ref())
     }
 
     /// The curves of all axes and the reader's notes, as JSON.
@@ -80,7 +82,11 @@ impl Record {
     /// The document and the text of `fit`.
     fn fit(&self, py: Python<'_>, options: Vec<String>) -> PyResult<(String, String)> {
         let record = self.0.clone();
-        left(py, None, move |_| record.fit(&options))
+        let fitting = options::fitting(options).map_err(raised)?;
+        left(py, None, move |_| {
+            let fits = record.fit(&fitting)?;
+            Ok((fits.json()?, fits.text()?))
+        })
     }
 
     /// Diagnoses all axes.
@@ -92,9 +98,10 @@ impl Record {
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Diagnosis> {
         let record = self.0.clone();
+        let search = options::search(options).map_err(raised)?;
         let diagnosis = left(py, progress.as_ref(), move |bar| {
             bar.set_length(axes);
-            record.diagnose(&options, &mut |number| {
+            record.diagnose(&search, &mut |number| {
                 bar.set_position(number as u64);
                 !bar.is_finished()
             })
@@ -111,7 +118,8 @@ impl Record {
         own: Vec<Py<OwnEffect>>,
     ) -> PyResult<Comparison> {
         let (record, effects) = (self.0.clone(), own::effects(&own));
-        let compared = left(py, None, move |_| record.compare(&axis, &options, &effects));
+        let model = options::model(options).map_err(raised)?;
+        let compared = left(py, None, move |_| record.compare(&axis, &model, &effects));
         own::checked(&own, compared.map(Comparison::new))
     }
 
@@ -137,12 +145,13 @@ impl Record {
     fn of_columns(
         py: Python<'_>,
         (name, rows, columns): (&str, usize, Vec<Column<'_>>),
-        options: &[String],
+        options: Vec<String>,
         progress: Option<&Py<PyAny>>,
     ) -> PyResult<Self> {
+        let reading = options::reading(options).map_err(raised)?;
         let arrays = Arrays::new(Path::new(name), rows, columns).map_err(raised)?;
         let record = watched(py, progress, |bar| {
-            interface::Record::of_arrays(&arrays, options, bar)
+            interface::Record::of_arrays(&arrays, &reading, bar)
         })?;
         Ok(Self::of(record))
     }
@@ -160,8 +169,15 @@ pub(crate) fn deviations(
     let lent = lent.collect::<PyResult<Vec<_>>>()?;
     let rows = lent.iter().map(Lent::rows).min().unwrap_or(0);
     let columns = lent.iter().map(Lent::column).collect();
+    let sensor = options::sensor(options).map_err(raised)?;
     let arrays = Arrays::new(Path::new("array"), rows, columns).map_err(raised)?;
     watched(py, progress.as_ref(), |bar| {
-        interface::deviations(&arrays, &options, bar)
+        interface::deviations(&arrays, (sensor.rate_hz, sensor.rate_per_count), bar)
     })
+}
+
+/// Whether the five terms explain a record, in words.
+#[pyfunction]
+pub(crate) fn explained(adequate: Option<bool>) -> &'static str {
+    verdict::explained(adequate)
 }

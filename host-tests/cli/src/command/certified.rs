@@ -2,7 +2,7 @@
 
 use crate::command::{
     input::record::{self, CovariateArguments, LogArguments},
-    output::{places, progress, rounding},
+    output::{places, progress},
 };
 use allanite::{
     Curve, Error, Model, Record, Scale,
@@ -17,6 +17,7 @@ use allanite::{
         RateUnit,
     },
 };
+use allanite_host::rounding;
 use allanite_host::{
     curve_file::{AxisCurve, CurveFile},
     dependence::candidates::Candidates,
@@ -70,7 +71,7 @@ pub(crate) fn certificate(
 ) -> Result<Certificate, Failure> {
     let axes = if record::is_curve(path) {
         let axes = CurveFile::read(path)?.axes.into_iter();
-        axes.map(record::beside).collect()
+        axes.map(allanite_host::record::beside).collect()
     } else {
         record::read_with_evidence(path, about_log, covariates)?
     };

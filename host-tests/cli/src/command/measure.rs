@@ -6,8 +6,9 @@ use crate::command::{
         many,
         record::{self, CovariateArguments, LogArguments},
     },
-    output::{disturbance::invalid, file::OutputFile, places::places, progress},
+    output::{file::OutputFile, places::places, progress},
 };
+use allanite_host::disturbance::invalid;
 use allanite_host::{
     curve_file::{AxisCurve, CurveFile},
     number::number,

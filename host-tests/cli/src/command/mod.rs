@@ -10,15 +10,12 @@ mod completions;
 #[cfg(not(target_family = "wasm"))]
 mod decode;
 pub(crate) mod diagnose;
-mod effect_argument;
 mod examples;
 pub mod explore;
 mod export;
 mod fit;
 mod input;
-pub mod interface;
 mod known_filter;
-mod limit;
 #[cfg(not(target_family = "wasm"))]
 mod lot;
 mod measure;
@@ -28,7 +25,6 @@ mod plot;
 mod report;
 #[cfg(not(target_family = "wasm"))]
 mod simulate;
-mod tried;
 pub mod usage;
 mod watch;
 #[cfg(not(target_family = "wasm"))]

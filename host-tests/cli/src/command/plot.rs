@@ -1,19 +1,13 @@
 //! `plot`: draws a record beside a model as a picture.
 
 use crate::command::{
-    diagnose::{
-        conclusion::print_written,
-        diagnosed::{Diagnosed, DiagnosisArguments},
-        pictures::Pictures,
-        words::shown_p,
-    },
+    diagnose::arguments::DiagnosisArguments,
     examples,
-    output::file::OutputFile,
+    output::{file::OutputFile, written::print_written},
 };
-use allanite_host::words;
-use allanite_log::failure::{Failure, Place, quoted};
-use allanite_plot::{Drawing, Quantity, svg};
-use clap::{Args, ValueEnum};
+use allanite_host::diagnose::drawing::{Shown, What, chosen, drawn};
+use allanite_log::failure::{Failure, Place};
+use clap::Args;
 use std::{io::Write, path::Path, path::PathBuf};
 
 /// Draw the Allan deviation and the spectrum beside the last model of `diagnose`, with the differences, and the rate
@@ -27,12 +21,12 @@ pub(super) struct Arguments {
     #[arg(long, short, value_name = "CURVE.svg|CURVE.png")]
     output: PathBuf,
     #[command(flatten)]
-    shown: Shown,
+    shown: ShownArguments,
 }
 
 /// What is drawn of a diagnosis.
 #[derive(Debug, Args)]
-pub(super) struct Shown {
+struct ShownArguments {
     /// The axis to draw [default: all axes, one below the other]
     #[arg(long, value_name = "NAME")]
     axis: Option<String>,
@@ -45,15 +39,14 @@ pub(super) struct Shown {
     what: Vec<What>,
 }
 
-/// A part of a drawing.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum What {
-    /// The Allan deviation over the averaging time, with its residual
-    Deviation,
-    /// The density over the frequency, with its residual
-    Spectrum,
-    /// The rate, the noise and recorded columns over time, with events
-    Rate,
+impl ShownArguments {
+    fn shown(&self) -> Shown {
+        Shown {
+            axis: self.axis.clone(),
+            step: self.step,
+            what: self.what.clone(),
+        }
+    }
 }
 
 /// The part of the program that a build without the feature `pictures` leaves out.
@@ -87,7 +80,7 @@ pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), 
     // The file comes first, so that an output that cannot be written is refused before the diagnosis.
     let mut file = OutputFile::create(&arguments.output, [&*arguments.diagnosis.input])?;
     let diagnosed = arguments.diagnosis.diagnosed()?;
-    let (input, shown) = (&arguments.diagnosis.input, &arguments.shown);
+    let (input, shown) = (&arguments.diagnosis.input, &arguments.shown.shown());
     let chosen = chosen(&diagnosed, input, shown)?;
     if matches!(format, Format::Png) && chosen.len() > MOST_AXES {
         return Err(Place::file(&arguments.output).failure(
@@ -120,80 +113,4 @@ fn png(drawing: &str, place: Place) -> Result<Vec<u8>, Failure> {
 #[cfg(not(feature = "pictures"))]
 fn png(_: &str, _: Place) -> Result<Vec<u8>, Failure> {
     Err(Failure::not_built_in(PNG))
-}
-
-/// The drawing of these axes, as the text of an SVG file.
-///
-/// # Errors
-/// When an axis has nothing of what is to be drawn.
-pub(super) fn drawn(chosen: &[&Diagnosed], input: &Path, shown: &Shown) -> Result<String, Failure> {
-    let drawings = chosen.iter();
-    let drawings = drawings.map(|diagnosed| drawing(diagnosed, input, shown));
-    Ok(svg(&drawings.collect::<Result<Vec<_>, _>>()?))
-}
-
-/// The axis that the option names, or all axes.
-///
-/// # Errors
-/// When there is no such axis.
-pub(super) fn chosen<'a>(
-    diagnosed: &'a [Diagnosed],
-    input: &Path,
-    shown: &Shown,
-) -> Result<Vec<&'a Diagnosed>, Failure> {
-    let Some(name) = &shown.axis else {
-        return Ok(diagnosed.iter().collect());
-    };
-    let chosen = diagnosed.iter().find(|one| one.axis.axis == *name);
-    let names = || {
-        let names = diagnosed.iter().map(|one| one.axis.axis.as_str());
-        names.collect::<Vec<_>>().join(", ")
-    };
-    let chosen = chosen.ok_or_else(|| {
-        Place::file(input).failure(
-            format!("there is no axis {}", quoted(name.as_bytes())),
-            format!("choose from {}", names()),
-        )
-    })?;
-    Ok(vec![chosen])
-}
-
-/// The drawing of a step, or of the last step if the diagnosis has fewer.
-fn drawing(diagnosed: &Diagnosed, input: &Path, shown: &Shown) -> Result<Drawing, Failure> {
-    let last = diagnosed.steps.len() - 1;
-    let at = shown.step.map_or(last, |step| step.min(last));
-    let step = &diagnosed.steps[at];
-    let axis = &diagnosed.axis;
-    let record = words::record(axis.samples, axis.rate_hz, axis.octaves.len());
-    let pictures = Pictures::of(diagnosed);
-    let wanted = |what: What| shown.what.is_empty() || shown.what.contains(&what);
-    let frames = pictures.frames().into_iter();
-    let frames = frames.filter(|frame| {
-        wanted(match frame.quantity {
-            Quantity::Deviation => What::Deviation,
-            Quantity::Density => What::Spectrum,
-        })
-    });
-    let drawing = Drawing {
-        title: format!("{}: {}", axis.axis, diagnosed.model_name(at)),
-        subtitle: format!(
-            "χ² {:.1}, {} degrees of freedom, p {}; {record}",
-            step.fit.chi_squared,
-            step.fit.degrees_of_freedom,
-            shown_p(step.fit.p_value),
-        ),
-        warning: diagnosed.invalid(),
-        unit: axis.unit,
-        figures: frames
-            .map(|frame| (pictures.figure(step, &frame), frame))
-            .filter(|(figure, _)| !figure.measured.x.is_empty())
-            .collect(),
-        course: pictures.course().filter(|_| wanted(What::Rate)),
-    };
-    if drawing.figures.is_empty() && drawing.course.is_none() {
-        let what = format!("axis {} has nothing of what is to be drawn", axis.axis);
-        let remedy = "give the log instead of a curve file, record longer, or leave out --what";
-        return Err(Place::file(input).failure(what, remedy));
-    }
-    Ok(drawing)
 }

@@ -1,7 +1,7 @@
 //! Queries in this process.
 
 use crate::logs::{Fleet, RATE_HZ, Row, SCALE, found, random, write, write_columns};
-use allanite_cli::command::interface::Record;
+use allanite_host::interface::Record;
 use allanite_fleet::cluster::local;
 use allanite_log::pieces::Pieces;
 use datafusion::{

@@ -3,7 +3,7 @@
 use super::{AxisCurve, ShortOctave, SpectrumLevel, SpectrumLevels};
 use allanite::{octave::Bridged, spectrum::Spectrum};
 use allanite_log::{
-    failure::Failure,
+    failure::{Failure, Place},
     pieces::{Pieces, UNIT_BITS},
     sizes::{self, LEVELS, OCTAVES, SEGMENT},
     unit::Unit,
@@ -17,8 +17,7 @@ impl AxisCurve {
     /// # Errors
     /// When there are too few samples, or a sum exceeds 128 bits.
     pub fn of_pieces(pieces: &Pieces, axis: &str, unit: Unit) -> Result<Self, Failure> {
-        let fail =
-            |what: String, remedy: &str| Failure::option(format!("axis {axis}: {what}"), remedy);
+        let fail = |what: String, remedy: &str| Place::default().axis_failure(axis, what, remedy);
         let raw = (0..OCTAVES).map(|octave| {
             let (differences, sum) = pieces.octave(octave);
             ShortOctave {

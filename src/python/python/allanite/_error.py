@@ -27,17 +27,21 @@ class AllaniteError(ValueError):
         What is wrong.
     remedy : str
         What to do about it.
+    axis : str or None
+        The axis that cannot be measured or fitted, whereas others of the record may; ``None`` for any other failure.
     """
 
-    def __init__(self, path: str | None, row: int | None, what: str, remedy: str) -> None:
-        super().__init__(path, row, what, remedy)
+    def __init__(self, path: str | None, row: int | None, what: str, remedy: str, axis: str | None = None) -> None:
+        super().__init__(path, row, what, remedy, axis)
         self.path = path
         self.row = row
         self.what = _in_python(what)
         self.remedy = _in_python(remedy)
+        self.axis = axis
 
     def __str__(self) -> str:
         place = "" if self.path is None else f"{self.path}:"
         if self.row is not None:
             place += f"{self.row}:"
-        return f"{place}{' ' if place else ''}{self.what}; {self.remedy}"
+        axis = "" if self.axis is None else f"axis {self.axis}: "
+        return f"{place}{' ' if place else ''}{axis}{self.what}; {self.remedy}"

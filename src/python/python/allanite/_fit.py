@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from . import _document
+from . import _document, _native
 from ._axes import Axes
 from ._model import Model
 from ._page import html_table, paragraphs
@@ -149,10 +149,8 @@ class Fit(Axes[AxisFit]):
 
 
 def _judged(axis: AxisFit) -> str:
-    said = {
-        True: "the five terms explain the record",
-        False: "the five terms do not explain the record: diagnose() finds what is missing",
-        None: "the record does not tell whether the five terms explain it",
-    }[axis.adequate]
+    said = _native.explained(axis.adequate)
+    if axis.adequate is False:
+        said += ": diagnose() finds what is missing"
     chi2 = "" if axis.chi2 is None else f" (χ² {axis.chi2:.1f}, {axis.dof} degrees of freedom)"
     return f"{axis.axis}: {axis.invalid or said}{chi2}"

@@ -28,6 +28,9 @@ class Record:
     @staticmethod
     def from_bytes(bytes: bytes) -> Record: ...
 
+def explained(adequate: bool | None) -> str:
+    """Whether the five terms explain a record, in words."""
+
 @final
 class Diagnosis:
     """The diagnoses of all axes of a record."""

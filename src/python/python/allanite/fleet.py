@@ -181,10 +181,9 @@ def diagnose(state: bytes, unit: str = "deg/s") -> dict[str, Any]:
 
 def _of_axis(error: AllaniteError) -> str:
     """Why an axis cannot be fitted, which must not end the query over all others; a wrong unit or damaged bytes do."""
-    _, said, what = str(error).partition("axis gyro: ")
-    if not said:
+    if error.axis is None:
         raise error
-    return what
+    return f"{error.what}; {error.remedy}"
 
 
 def register(context: Any) -> Any:

@@ -1,9 +1,6 @@
 //! `compare`: shows octave by octave where a model fails.
 
-pub(super) mod compared;
-pub(super) mod json;
 pub(super) mod model;
-mod text;
 
 use crate::command::{
     examples,
@@ -12,14 +9,12 @@ use crate::command::{
         record::{self, LogArguments},
     },
 };
-use allanite::{Curve, Model};
-use allanite_host::curve_file::AxisCurve;
-use allanite_log::{
-    OCTAVES,
-    failure::{Failure, Place},
+use allanite_host::{
+    compare::{compared::Compared, json, text, visible::check_visible},
+    curve_file::AxisCurve,
 };
+use allanite_log::failure::{Failure, Place};
 use clap::Args;
-use compared::Compared;
 use model::ModelArguments;
 use std::{
     io::{self, Write},
@@ -93,32 +88,4 @@ fn read(path: &Path, arguments: &Arguments) -> Result<(Vec<AxisCurve>, Vec<AxisC
         ));
     }
     record::measure_in_two(path, &arguments.about_log, share)
-}
-
-/// A variance below this share of the squared coefficient is taken for a rounding error. Chosen by
-/// hand: it is some five times the rounding of double precision.
-const LEAST_VARIANCE: f64 = 1e-15;
-
-/// Refuses an effect that contributes to no octave, because it cannot be fitted. An example is an
-/// oscillation at a multiple of the sample rate.
-pub(super) fn check_visible(model: &Model, curve: &Curve<OCTAVES>) -> Result<(), Failure> {
-    // A shape that is looked for is found where it is visible.
-    let known = model.terms().iter();
-    for term in known.filter(|term| !term.fitted || term.parameters[0] > 0.0) {
-        let shape = term.sampled_shape(curve.interval_s());
-        let variance = |m: u32| term.effect.variance(f64::from(m), &shape);
-        let mut octaves = curve.points().iter().map(|point| variance(point.m));
-        let finite = octaves.clone().all(f64::is_finite);
-        if !(finite && octaves.any(|variance| variance > LEAST_VARIANCE)) {
-            return Err(Failure::option(
-                format!(
-                    "--with {}: the effect is invisible at a sample rate of {} Hz",
-                    term.effect.name(),
-                    curve.rate_hz()
-                ),
-                "give other parameters",
-            ));
-        }
-    }
-    Ok(())
 }

@@ -1,11 +1,9 @@
-//! The model of `compare`: the five terms, with the effects that options add or leave out.
+//! The model of `compare`, as options of the command line.
 
-use crate::command::{
-    effect_argument::{EffectArgument, Shape},
-    known_filter::KnownFilter,
-};
-use allanite::{Model, Term, model::MAX_EFFECTS};
-use allanite_log::failure::{Failure, quoted};
+use crate::command::known_filter::KnownFilter;
+use allanite::Model;
+use allanite_host::compare::model::ModelChoice;
+use allanite_log::failure::Failure;
 use clap::Args;
 
 /// Effects to add and terms to leave out.
@@ -25,73 +23,21 @@ pub(in crate::command) struct ModelArguments {
 }
 
 impl ModelArguments {
-    /// The options with these values, for a caller without a command line.
-    pub(in crate::command) fn new(with: Vec<String>, without: Vec<String>) -> Self {
-        Self {
-            with,
-            without,
-            filter: KnownFilter::default(),
-        }
-    }
-
     /// Whether the options change the five terms by more than a known filter.
     pub(in crate::command) fn changes(&self) -> bool {
         !self.with.is_empty() || !self.without.is_empty()
     }
 
-    /// Builds the model. A shape of zeros that is to be fitted is to be looked for in its whole range.
+    /// Builds the model.
     ///
     /// # Errors
-    /// When an effect is unknown, lacks a parameter, is in the model twice or not in it, or when the
-    /// model gets too large or empty.
+    /// As of [`ModelChoice::model`].
     pub(in crate::command) fn model(&self) -> Result<Model, Failure> {
-        let mut model = self.filter.model()?;
-        for name in &self.without {
-            if model.position(name).is_none() {
-                let names = model.terms().iter().map(|term| term.effect.name());
-                return Err(Failure::option(
-                    format!(
-                        "--without {}: the effect is not in the model",
-                        quoted(name.as_bytes())
-                    ),
-                    format!("choose from {}", names.collect::<Vec<_>>().join(", ")),
-                ));
-            }
-            model = model.without(name);
-        }
-        for text in &self.with {
-            let mut argument = EffectArgument::parse("--with", text)?;
-            let effect = argument.effect()?;
-            // There can be several lines or resonances, but one filter, and one effect without a shape.
-            let is_single = effect.parameters().is_empty() || effect.replaces().is_some();
-            if is_single && model.position(effect.name()).is_some() {
-                return Err(argument.failure("is in the model already", "drop this option"));
-            }
-            let term = match argument.known_or_fitted(effect)? {
-                Shape::Known(parameters) => Term::known(effect, parameters),
-                Shape::Fitted(parameters) => Term {
-                    fitted: true,
-                    ..Term::known(effect, parameters)
-                },
-            };
-            if argument.take(effect.coefficient()).is_some() {
-                let what = format!("{} is fitted, not given", effect.coefficient());
-                return Err(argument.failure(what, "give only the shape parameters"));
-            }
-            model.put(term).map_err(|_| {
-                argument.failure(
-                    format!("the model would have more than {MAX_EFFECTS} effects"),
-                    "leave some out with --without",
-                )
-            })?;
-            argument.finish()?;
-        }
-        if model.terms().is_empty() {
-            return Err(Failure::option(
-                "the model has no effects left",
-                "drop one of the options --without",
-            ));
-        }
-        Ok(model)
+        let choice = ModelChoice {
+            with: self.with.clone(),
+            without: self.without.clone(),
+            filter: self.filter.filter.clone(),
+        };
+        choice.model()
     }
 }

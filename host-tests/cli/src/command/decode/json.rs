@@ -1,7 +1,6 @@
 //! Factory certificates and snapshots as a JSON document.
 
 use super::decoded::{self, Decoded, Stored, StoredSnapshot};
-use crate::command::output::{event_json, model_json};
 use allanite::{
     diagnosis::Verdict,
     storage::{
@@ -10,6 +9,7 @@ use allanite::{
     },
 };
 use allanite_host::units;
+use allanite_host::{event_json, model_json};
 use allanite_log::unit::Unit;
 use serde::Serialize;
 use serde_json::{Map, Value, json};

@@ -2,7 +2,6 @@
 
 use super::decoded::{self, Decoded, Stored, StoredSnapshot};
 use allanite::{
-    diagnosis::Verdict,
     effect::{Effect, IEEE_952, Parameter},
     storage::{
         AxisCertificate, Certificate, CertifiedLimit, CertifiedShape, CertifiedState, CertifiedTerm,
@@ -10,7 +9,9 @@ use allanite::{
 };
 use allanite_host::{
     number::{duration, number, probability},
-    units, words,
+    units,
+    verdict::{ambiguous, certified},
+    words,
 };
 use allanite_log::unit::Unit;
 use comfy_table::{CellAlignment, Table, presets::NOTHING};
@@ -105,18 +106,7 @@ fn p_value(axis: &AxisCertificate, before: &str) -> String {
 /// The verdict, with the effects that were found.
 fn judgement(axis: &AxisCertificate) -> String {
     let found = words::list(axis.found().map(|term| term.effect.name()));
-    match axis.verdict {
-        None => "not diagnosed".into(),
-        Some(Verdict::Adequate) => "adequate".into(),
-        Some(Verdict::Improved) if found.is_empty() => "improved".into(),
-        Some(Verdict::Improved) => format!("with {found}"),
-        Some(Verdict::Incomplete) if found.is_empty() => "incomplete".into(),
-        Some(Verdict::Incomplete) => format!("with {found}, part unexplained"),
-        Some(Verdict::Unexplained) => "unexplained".into(),
-        Some(Verdict::TooShort) => "too short to judge".into(),
-        Some(Verdict::Invalid(reason)) => format!("invalid, {reason}"),
-        Some(verdict) => verdict.name().into(),
-    }
+    certified(axis.verdict, &found)
 }
 
 /// What a diagnosis found besides the terms, one line each.
@@ -134,9 +124,9 @@ fn findings(axis: &AxisCertificate, unit: Unit) -> Vec<String> {
     for group in found.doubts.chunk_by(|a, b| a.effect == b.effect) {
         let others = group.iter().map(|doubt| doubt.other.name());
         lines.push(format!(
-            "{}: ambiguous, {} would explain the record about as well",
+            "{}: {}",
             words::plain(group[0].effect.name()),
-            words::alternatives(others),
+            ambiguous(&words::alternatives(others)),
         ));
     }
     for band in &found.bands {

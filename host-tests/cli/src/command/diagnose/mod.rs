@@ -1,22 +1,15 @@
 //! `diagnose`: finds the effects of a curve that the five terms do not describe.
 
-pub(super) mod conclusion;
-pub(super) mod diagnosed;
-pub(super) mod found;
-mod given_filter;
-pub(super) mod json;
-pub(super) mod lines;
-pub(super) mod pictures;
-pub(super) mod text;
-pub(super) mod words;
+pub(super) mod arguments;
 
 use crate::command::{
     examples,
     input::many::{self, FilesArguments, Findings},
 };
+use allanite_host::diagnose::{diagnosed::Diagnosed, json, text};
 use allanite_log::failure::Failure;
+use arguments::DiagnosisSettings;
 use clap::Args;
-use diagnosed::{Diagnosed, DiagnosisSettings};
 use std::{
     io::{self, Write},
     path::Path,

@@ -6,12 +6,12 @@ use super::{
     question::{Question, with},
     shell,
 };
-use crate::command::{
+use crate::command::output::drawn_frame::{self, DrawnFrame};
+use allanite::{Coefficient, Comparison, fit::State};
+use allanite_host::{
     diagnose::words::{disagreement, shown_p},
     fit::table::state,
-    output::drawn_frame::{self, DrawnFrame},
 };
-use allanite::{Coefficient, Comparison, fit::State};
 use allanite_host::{number::number, units, words};
 use allanite_log::{BINS, OCTAVES, unit::Unit};
 use allanite_plot::{Figure, Frame};
@@ -21,7 +21,7 @@ use serde::Serialize;
 #[derive(Serialize)]
 pub(super) struct Answer {
     #[serde(flatten)]
-    verdict: Verdict,
+    verdict: GoodnessOfFit,
     /// The error, which falls from model to model: χ², and what follows the covariates as long as it is not taken out.
     error: f64,
     adequate: Option<bool>,
@@ -42,7 +42,7 @@ pub(super) struct Answer {
 
 /// How well a model explains a record.
 #[derive(Serialize)]
-struct Verdict {
+struct GoodnessOfFit {
     chi2: f64,
     dof: usize,
     p: String,
@@ -80,7 +80,7 @@ struct Shown {
 struct Judged {
     record: usize,
     #[serde(flatten)]
-    verdict: Verdict,
+    verdict: GoodnessOfFit,
     records: Vec<DrawnRecord>,
 }
 
@@ -133,8 +133,8 @@ fn drawn(figures: Vec<Figure>, frames: &[Frame]) -> Vec<(DrawnRecord, DrawnModel
         .collect()
 }
 
-fn verdict(comparison: &Comparison<OCTAVES, BINS>) -> Verdict {
-    Verdict {
+fn verdict(comparison: &Comparison<OCTAVES, BINS>) -> GoodnessOfFit {
+    GoodnessOfFit {
         chi2: comparison.chi_squared,
         dof: comparison.degrees_of_freedom,
         p: shown_p(comparison.p_value),

@@ -1,8 +1,9 @@
 //! What the page shows as files: a drawing and a table.
 
 use super::{fitted::Fitted, question::Question, record::SessionRecord};
-use crate::command::{diagnose::words::shown_p, output::cell::cell};
+use crate::command::output::cell::cell;
 use allanite::Comparison;
+use allanite_host::diagnose::words::shown_p;
 use allanite_host::{confidence::relative_errors, words};
 use allanite_log::{BINS, OCTAVES};
 use allanite_plot::{Drawing, Figure, Frame, relative_error, svg};

@@ -1,15 +1,14 @@
 //! A model fitted to one record and judged by others.
 
 use super::{question::Question, record::SessionRecord};
-use crate::command::{
-    compare::{check_visible, compared::fitted},
-    input::record::library_failure,
-};
+use crate::command::input::record::library_failure;
 use allanite::{
     Comparison, Curve, Model, Record,
     fit::{Fit, Options},
     spectrum::Spectrum,
 };
+use allanite_host::compare::compared::fitted;
+use allanite_host::compare::visible::check_visible;
 use allanite_host::confidence::relative_errors;
 use allanite_log::{
     BINS, OCTAVES,

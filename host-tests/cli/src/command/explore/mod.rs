@@ -21,7 +21,7 @@ pub(super) use arguments::Arguments;
 pub use question::What;
 pub use session::Session;
 
-use super::diagnose::diagnosed::OfPage;
+use crate::command::diagnose::arguments::OfPage;
 use allanite_log::failure::Failure;
 use std::{io::Write, path::Path};
 

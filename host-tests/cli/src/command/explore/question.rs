@@ -1,12 +1,12 @@
 //! What the page asks: a model, in the words of `compare`, and the records to see it beside.
 
-use crate::command::{compare::model::ModelArguments, effect_argument::EffectArgument};
 use allanite::{Model, Term};
+use allanite_host::{compare::model::ModelChoice, effect_argument::EffectArgument};
 use allanite_log::failure::Failure;
 use clap::ValueEnum;
 use serde::Deserialize;
 
-pub(super) use crate::command::effect_argument::written as with;
+pub(super) use allanite_host::effect_argument::written as with;
 
 /// What can be asked for about a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -69,7 +69,12 @@ impl Question {
     /// # Errors
     /// Those of `compare`.
     pub(super) fn model(&self) -> Result<Model, Failure> {
-        ModelArguments::new(self.with.clone(), self.without.clone()).model()
+        let choice = ModelChoice {
+            with: self.with.clone(),
+            without: self.without.clone(),
+            filter: None,
+        };
+        choice.model()
     }
 
     /// The terms of a model that the values of `--with` added, in their order, each with its place.
@@ -109,7 +114,12 @@ mod tests {
             written[1]
         );
         assert!(written[1].ends_with(",poles=2"));
-        let again = ModelArguments::new(written, vec!["rate_ramp".into()]).model();
+        let again = ModelChoice {
+            with: written,
+            without: vec!["rate_ramp".into()],
+            filter: None,
+        };
+        let again = again.model();
         let again = again.expect("the same model");
         for (one, other) in model.terms().iter().zip(again.terms()) {
             assert_eq!(one.effect.name(), other.effect.name());

@@ -5,14 +5,12 @@ use super::{
     taken_out::TakenOut,
     thought::{Thought, think},
 };
-use crate::command::{
-    diagnose::{diagnosed::Diagnosed, pictures},
-    input::{
-        many::shown,
-        record::{self, is_curve, library_failure},
-    },
+use crate::command::input::{
+    many::shown,
+    record::{self, is_curve, library_failure},
 };
 use allanite::{Curve, Model, effect::Span, spectrum::Spectrum};
+use allanite_host::diagnose::{diagnosed::Diagnosed, pictures};
 use allanite_host::{curve_file::AxisCurve, words};
 use allanite_log::{
     BINS, Evidence, OCTAVES, Spectrogram,

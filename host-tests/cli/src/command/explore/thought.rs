@@ -1,12 +1,12 @@
 //! What the diagnosis thinks of a record, in JSON.
 
 use super::question::with;
-use crate::command::diagnose::{
+use allanite::{Model, effect::IEEE_952};
+use allanite_host::diagnose::{
     diagnosed::Diagnosed,
     found::Found,
     words::{Finding, lead},
 };
-use allanite::{Model, effect::IEEE_952};
 use serde::Serialize;
 
 /// The diagnosis of a record, and the model with which it ends in the words of `compare`.

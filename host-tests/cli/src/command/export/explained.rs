@@ -1,24 +1,24 @@
 //! The axes of a record with the model that is exported: what the diagnosis finds, the five terms, or what was asked for.
 
 use super::arguments::{Arguments, ModelName};
-use crate::command::{
-    compare::compared::Compared,
-    diagnose::{
-        diagnosed::Diagnosed,
-        words::{unexplained, verdict},
-    },
-    fit::fitted::{Fitted, MethodName},
-    input::record,
-    known_filter,
-    output::{disturbance::invalid as words_of_invalid, progress},
-    tried::TriedCovariate,
-};
+use crate::command::{input::record, output::progress};
 use allanite::{
     Comparison, Curve, Error, Model, course::Course, covariate::Slope, diagnosis::Verdict,
     fit::Fit, spectrum::Spectrum,
 };
 use allanite_host::{
-    curve_file::AxisCurve, dependence::candidates::Candidate, number::probability, words,
+    compare::compared::Compared,
+    diagnose::{
+        diagnosed::Diagnosed,
+        words::{unexplained, verdict},
+    },
+    disturbance::invalid as words_of_invalid,
+    fit::fitted::{Fitted, MethodName},
+    known_filter,
+    tried::TriedCovariate,
+};
+use allanite_host::{
+    curve_file::AxisCurve, dependence::candidates::Candidate, verdict::in_comment, words,
 };
 use allanite_log::{
     BINS, Evidence, OCTAVES,
@@ -149,7 +149,7 @@ impl Explained {
         Ok(Self {
             warnings: warnings.collect(),
             model_name: known_filter::terms(&fitted.model),
-            verdict: adequacy(&fitted.fit),
+            verdict: in_comment(&fitted.fit),
             axis: fitted.axis,
             curve: fitted.curve,
             spectrum,
@@ -174,7 +174,7 @@ impl Explained {
         let names = names.map(|term| words::plain(term.effect.name()));
         Ok(Self {
             model_name: names.collect::<Vec<_>>().join(" + "),
-            verdict: adequacy(&compared.fit),
+            verdict: in_comment(&compared.fit),
             axis: compared.axis,
             curve,
             spectrum: compared.spectrum,
@@ -234,18 +234,6 @@ fn rest(comparison: &Comparison<OCTAVES, BINS>) -> String {
     match comparison.stretches().next() {
         None if !bands.is_empty() => format!("the spectrum is {}", bands.join(", ")),
         _ => comparison.to_string(),
-    }
-}
-
-/// What the p-value of a fit says.
-fn adequacy(fit: &Fit) -> String {
-    let p = probability(fit.p_value);
-    match fit.is_adequate() {
-        Some(true) => format!("adequate (p {p})"),
-        Some(false) => format!(
-            "not adequate (p {p}): the record has another effect, and the overbound is the safer choice"
-        ),
-        None => "there are too few octaves to judge the model".into(),
     }
 }
 

@@ -2,12 +2,12 @@
 //! oscillations that a notch takes out, dependences that are subtracted, and what it leaves.
 
 use super::explained::{Dependence, Explained};
-use crate::command::known_filter::is_filter;
 use allanite::{
     Term,
     effect::{AngleRandomWalk, BiasInstability, Effect, GaussMarkov, RateRandomWalk, Resonance},
     fit::ShapeEstimate,
 };
+use allanite_host::known_filter::is_filter;
 use allanite_host::{dependence::candidates::Form, overbound::GaussMarkovProcess, words::plain};
 use std::f64::consts::PI;
 

@@ -6,8 +6,8 @@ use super::{
     filter_states::{Correction, Interval, Oscillation, Process},
     given::Given,
 };
-use crate::command::known_filter::Shape;
 use allanite::{Coefficient, fit::State};
+use allanite_host::known_filter::Shape;
 use allanite_host::overbound::{GaussMarkovProcess, Overbound};
 use serde::Serialize;
 

@@ -1,10 +1,6 @@
 //! `fit`: computes the coefficients of curves.
 
-pub(super) mod fitted;
-pub(super) mod json;
-mod judged;
 mod summary;
-pub(super) mod table;
 
 use crate::command::{
     examples,
@@ -13,14 +9,18 @@ use crate::command::{
         record::{self, CovariateArguments, LogArguments},
     },
     known_filter::KnownFilter,
+};
+use allanite_host::{
+    fit::{
+        fitted::{Fitted, MethodName, Settings, fitted},
+        json,
+        judged::Worst,
+        table,
+    },
     limit::LimitArgument,
 };
-use allanite::Model;
-use allanite_host::curve_file::AxisCurve;
-use allanite_log::{Evidence, failure::Failure};
+use allanite_log::failure::Failure;
 use clap::Args;
-use fitted::{Fitted, MethodName};
-use judged::{Judged, Worst};
 use std::{
     io::{self, Write},
     path::Path,
@@ -62,34 +62,6 @@ impl Findings for Vec<Fitted> {
     fn print_many(found: &[(&Path, Self)], output: &mut impl Write) -> io::Result<()> {
         summary::print(found, output)
     }
-}
-
-/// How axes are fitted.
-pub(super) struct Settings<'a> {
-    /// The five terms, behind a known filter if there is one.
-    pub(crate) model: &'a Model,
-    pub(crate) method: MethodName,
-    /// The largest values that coefficients may have.
-    pub(crate) limits: &'a [LimitArgument],
-}
-
-/// Fits all axes of a file.
-///
-/// # Errors
-/// When an axis cannot be fitted, or a limit is of another model or unit.
-pub(super) fn fitted(
-    path: &Path,
-    axes: Vec<(AxisCurve, Evidence)>,
-    settings: &Settings<'_>,
-) -> Result<Vec<Fitted>, Failure> {
-    let fit = |(axis, evidence)| {
-        let (model, method) = (settings.model, settings.method);
-        let mut fitted = Fitted::with_evidence(path, axis, model, method, evidence)?;
-        let fit = (&fitted.fit, fitted.is_valid());
-        fitted.limits = Judged::all(fit, fitted.axis.unit, settings.limits)?;
-        Ok(fitted)
-    };
-    axes.into_iter().map(fit).collect()
 }
 
 /// Runs the command.

@@ -1,9 +1,9 @@
 //! The coefficients of many files in one table of 80 columns, with one row for each axis below its file's name.
 
-use super::{fitted::Fitted, table::customary};
 use crate::command::input::many::shown;
 use allanite::fit::Fit;
-use allanite_host::number::probability;
+use allanite_host::fit::{fitted::Fitted, table::customary};
+use allanite_host::{number::probability, verdict::ADEQUATE};
 use comfy_table::{CellAlignment, Table, presets::NOTHING};
 use std::{
     io::{self, Write},
@@ -19,7 +19,7 @@ const HEADER: [&str; 8] = [
     "K °/h^1.5",
     "R °/h²",
     "p",
-    "adequate",
+    ADEQUATE,
 ];
 
 /// Prints the table, and a line that explains its signs.

@@ -1,12 +1,15 @@
 //! Logs and curve files as inputs of commands.
 
 use crate::command::{input::standard_input, output::progress};
-use allanite_host::curve_file::{AxisCurve, CurveFile};
+pub(crate) use allanite_host::record::{is_curve, library_failure};
+use allanite_host::{
+    curve_file::AxisCurve,
+    record::{curves, curves_of_file, curves_without_evidence, with_evidence},
+};
 use allanite_log::{
     self as log, ColumnChoice, CovariateChoice, Covariates, Cuts, Evidence, Log, Moment, Repeats,
     TimeRange, TimeUnit,
     failure::{Failure, Place, one_line, report},
-    pieces::Pieces,
     unit::{Sensor, Unit},
 };
 use clap::Args;
@@ -175,51 +178,13 @@ fn read_beside(
     ) -> Result<Log, Failure>,
 ) -> Result<Vec<(AxisCurve, Evidence)>, Failure> {
     if is_curve(path) {
-        return curves_without_evidence(path, arguments, covariates);
+        return curves_without_evidence(path, &arguments.options(), &covariates.tried());
     }
     let covariates = covariates.tried();
     let options = arguments.options();
     let log = reading(path, |file, bar| read_log(file, &options, &covariates, bar))?;
     note(path, &log);
     with_evidence(&log)
-}
-
-/// The curves of a curve file, whose evidence is what their [pieces](beside) tell.
-///
-/// # Errors
-/// When the file is not valid, or an option is about logs.
-pub(crate) fn curves_without_evidence(
-    path: &Path,
-    arguments: &LogArguments,
-    covariates: &CovariateArguments,
-) -> Result<Vec<(AxisCurve, Evidence)>, Failure> {
-    if !covariates.covariates.is_empty() {
-        return Err(Place::file(path).failure(
-            "a curve file has no covariates",
-            "give the log, or drop --covariates",
-        ));
-    }
-    let axes = read(path, arguments)?.into_iter();
-    Ok(axes.map(beside).collect())
-}
-
-/// A curve, with what its pieces tell of the samples, if it has them: whether the record is that of a gyro at rest.
-pub(crate) fn beside(axis: AxisCurve) -> (AxisCurve, Evidence) {
-    let evidence = Evidence {
-        invalid: axis.pieces.as_ref().and_then(Pieces::invalid),
-        ..Evidence::default()
-    };
-    (axis, evidence)
-}
-
-/// The curves of a log that was read, with the evidence beside each.
-///
-/// # Errors
-/// When the sums of an axis are too large for a curve.
-pub(crate) fn with_evidence(log: &Log) -> Result<Vec<(AxisCurve, Evidence)>, Failure> {
-    let evidence = log.axes.iter().map(|axis| axis.evidence.clone());
-    let evidence = evidence.map(Option::unwrap_or_default).collect::<Vec<_>>();
-    Ok(curves(log)?.into_iter().zip(evidence).collect())
 }
 
 /// Measures the curves of a log's first part and those of its last part, which is this share of the log.
@@ -258,34 +223,10 @@ fn note(path: &Path, log: &Log) {
     }
 }
 
-fn curves(log: &Log) -> Result<Vec<AxisCurve>, Failure> {
-    log.axes
-        .iter()
-        .map(|axis| AxisCurve::of(axis, log.rate_hz, log.unit))
-        .collect()
-}
-
 /// The curves of a log, or of a curve file, which has the extension `.json`.
 pub(crate) fn read(path: &Path, arguments: &LogArguments) -> Result<Vec<AxisCurve>, Failure> {
     if !is_curve(path) {
         return measure(path, arguments);
     }
-    if arguments.options() != log::Options::default() {
-        return Err(Place::file(path).failure(
-            "a curve file contains its rate, scale, unit and axes",
-            "drop the options about logs",
-        ));
-    }
-    Ok(CurveFile::read(path)?.axes)
-}
-
-/// Whether the extension is that of a curve file.
-pub(crate) fn is_curve(path: &Path) -> bool {
-    path.extension()
-        .is_some_and(|extension| extension.eq_ignore_ascii_case("json"))
-}
-
-/// The failure for an error of the library about an axis.
-pub(crate) fn library_failure(path: &Path, axis: &str, error: allanite::Error) -> Failure {
-    Place::file(path).failure(format!("axis {axis}: {error:#}"), error.remedy())
+    curves_of_file(path, &arguments.options())
 }

@@ -1,7 +1,8 @@
 //! A coefficient of a lot beside its limit.
 
 use super::device::Device;
-use crate::command::{decode, limit::Limit};
+use crate::command::decode;
+use allanite_host::limit::Limit;
 use allanite_host::{
     lot::{Capability, Decision, ErrorModel, Measurement, Sample, acceptance_limit},
     units,

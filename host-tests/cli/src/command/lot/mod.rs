@@ -19,8 +19,8 @@ use crate::command::{
         many,
         record::{CovariateArguments, LogArguments},
     },
-    limit::LimitArgument,
 };
+use allanite_host::limit::LimitArgument;
 use allanite_log::failure::{Failure, Place};
 use clap::Args;
 use device::Device;

@@ -1,7 +1,10 @@
 //! The data of a report's page: the diagnosis as `diagnose --json` prints it, and the figures and words
 //! of every step and of every candidate.
 
-use crate::command::{
+use crate::command::output::drawn_frame::{self, DrawnFrame};
+use allanite::diagnosis::{Addition, Candidate as Tried, Step};
+use allanite_host::units;
+use allanite_host::{
     diagnose::{
         self,
         diagnosed::Diagnosed,
@@ -9,14 +12,8 @@ use crate::command::{
         pictures::Pictures,
         words::{Finding, candidate_name, disagreement, shown_p},
     },
-    fit,
-    output::{
-        drawn_frame::{self, DrawnFrame},
-        model_json,
-    },
+    fit, model_json,
 };
-use allanite::diagnosis::{Addition, Candidate as Tried, Step};
-use allanite_host::units;
 use allanite_log::{BINS, OCTAVES, unit::Unit};
 use allanite_plot::{CourseFigure, Frame, Line, Measured, Share};
 use serde::Serialize;

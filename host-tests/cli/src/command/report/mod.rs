@@ -3,11 +3,12 @@
 mod json;
 mod page;
 
+use crate::command::diagnose::arguments::DiagnosisArguments;
 use crate::command::{
-    diagnose::{self, diagnosed::DiagnosisArguments},
     examples, explore,
-    output::file::OutputFile,
+    output::{file::OutputFile, written::print_written},
 };
+use allanite_host::diagnose;
 use allanite_log::failure::{Failure, Place};
 use clap::Args;
 use std::{
@@ -75,7 +76,7 @@ pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), 
         Some(_) => "open it in a browser, where effects can be tried by hand",
         None => "open it in a browser; `explore` changes the effects by hand",
     };
-    diagnose::conclusion::print_written(
+    print_written(
         &diagnosed.iter().collect::<Vec<_>>(),
         (&arguments.output, next),
         output,

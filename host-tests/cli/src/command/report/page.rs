@@ -1,11 +1,6 @@
 //! The page of a report: its static content, and the data for its script.
 
 use crate::command::{
-    diagnose::{
-        conclusion,
-        diagnosed::Diagnosed,
-        words::{lead, limits},
-    },
     explore::Carried,
     output::{glossary, shell::quoted},
 };
@@ -13,7 +8,12 @@ use allanite::{
     diagnosis::{Options, Verdict},
     fit::ADEQUATE_P,
 };
-use allanite_host::words;
+use allanite_host::diagnose::{
+    conclusion,
+    diagnosed::Diagnosed,
+    words::{lead, limits},
+};
+use allanite_host::{verdict, words};
 use allanite_log::failure::one_line;
 use allanite_plot as plot;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
@@ -146,16 +146,15 @@ fn summary(diagnosed: &[Diagnosed]) -> Markup {
 
 /// The class of the verdict in CSS, and the verdict in a few words.
 fn badge(diagnosed: &Diagnosed) -> (&'static str, &'static str) {
-    match diagnosed.verdict {
-        _ if diagnosed.stationarity.is_disturbed() => ("open", "not stationary"),
-        Verdict::Adequate => ("good", "five terms suffice"),
-        Verdict::Improved => ("found", "effects found"),
-        Verdict::Incomplete => ("open", "effects found, part unexplained"),
-        Verdict::Unexplained => ("open", "unexplained"),
-        Verdict::TooShort => ("open", "too short to judge"),
-        Verdict::Invalid(_) => ("open", "record invalid"),
-        _ => ("open", "unknown"),
+    if diagnosed.stationarity.is_disturbed() {
+        return ("open", verdict::NOT_STATIONARY_IN_WORDS);
     }
+    let class = match diagnosed.verdict {
+        Verdict::Adequate => "good",
+        Verdict::Improved => "found",
+        _ => "open",
+    };
+    (class, verdict::on_badge(diagnosed.verdict))
 }
 
 fn introduction() -> Markup {
@@ -175,7 +174,7 @@ fn introduction() -> Markup {
                 "a filter is an edge. In a simple record, the five noise terms of IEEE 952 add up to both. "
                 "Where the measured dots leave the model’s line, the record has another effect. The bars "
                 "are standard errors of the measurement. χ² is the squared distance of the dots from the "
-                "line, each weighted by its error: for an adequate model, χ² is about as large as the "
+                "line, each weighted by its error: for " (verdict::ADEQUATE_MODEL) ", χ² is about as large as the "
                 "number of degrees of freedom. All steps share one scale of residuals, linear near zero "
                 "and logarithmic beyond, so that the error is seen to fall. χ² is the one number that falls from step to step; what "
                 "follows a recorded temperature counts for it until it is subtracted. Each step adds the effect that explains most."
@@ -236,7 +235,7 @@ fn settings(content: &Content) -> Markup {
             "model tolerance",
             format!("{} %", 100.0 * options.tolerance),
         ),
-        ("model is adequate from", format!("p = {ADEQUATE_P}")),
+        (verdict::ADEQUATE_FROM, format!("p = {ADEQUATE_P}")),
         (
             "largest number of effects to add",
             options.max_effects.to_string(),

@@ -1,11 +1,11 @@
 //! The diagnosis of a recording, which a thread of its own repeats while counts arrive.
 
-use crate::command::diagnose::{
+use allanite::Model;
+use allanite_host::curve_file::AxisCurve;
+use allanite_host::diagnose::{
     diagnosed::Diagnosed,
     words::{brief, verdict},
 };
-use allanite::Model;
-use allanite_host::curve_file::AxisCurve;
 use allanite_log::Evidence;
 use std::{
     thread::{self, JoinHandle},

@@ -1,9 +1,9 @@
 //! The screen of a recording: the curves with their models above, the coefficients below, and what is missing.
 
 use super::status::{AxisStatus, Status, verdict, waiting};
-use crate::command::fit;
 use allanite::Comparison;
 use allanite_host::{
+    fit,
     number::{duration, number},
     units,
 };

@@ -17,10 +17,10 @@ use super::{
     status::Status,
 };
 use crate::command::{
-    fit,
     input::record,
     output::{file::OutputFile, progress},
 };
+use allanite_host::fit;
 use allanite_log::failure::{Failure, Place, plural, report};
 use console::Term;
 use std::{

@@ -4,17 +4,18 @@ use super::{
     diagnosis::{Diagnoser, Found},
     recording::Snapshot,
 };
-use crate::command::fit::{
-    self,
-    fitted::{Fitted, MethodName},
-};
 use allanite::{
     Coefficient, Comparison, Model, Record,
     fit::{Fit, State},
 };
 use allanite_host::{
     confidence::TWO_SIDED_95,
-    number::{duration, probability},
+    fit::{
+        self,
+        fitted::{Fitted, MethodName},
+    },
+    number::duration,
+    verdict::with_p,
 };
 use allanite_log::{BINS, OCTAVES};
 use std::path::Path;
@@ -128,12 +129,7 @@ impl Status {
 
 /// The verdict on the five terms, with the p-value.
 pub(super) fn verdict(fit: &Fit) -> String {
-    let p = probability(fit.p_value);
-    match fit.is_adequate() {
-        Some(true) => format!("adequate, p {p}"),
-        Some(false) => format!("not adequate, p {p}"),
-        None => "too few octaves to judge".into(),
-    }
+    with_p(fit)
 }
 
 /// How much longer to record until a coefficient is measured, in words; empty for a measured

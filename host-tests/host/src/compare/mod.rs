@@ -1,0 +1,7 @@
+//! A model beside a record: the comparison, its document and its text.
+
+pub mod compared;
+pub mod json;
+pub mod model;
+pub mod text;
+pub mod visible;

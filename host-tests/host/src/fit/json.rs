@@ -1,0 +1,164 @@
+//! The JSON document of a fit.
+
+use super::{
+    fitted::{Fitted, MethodName},
+    judged::Judged,
+};
+use crate::units;
+use crate::{
+    known_filter::{Shape, known_filter},
+    rounding,
+    tried::{self, TriedCovariate},
+};
+use allanite::{Coefficient, fit::State};
+use allanite_log::unit::Unit;
+use serde::{Serialize, Serializer};
+
+/// The document of one file.
+#[derive(Serialize)]
+pub struct Document<'a> {
+    /// The axes, in their order in the record.
+    pub axes: Vec<Axis<'a>>,
+}
+
+/// An axis with its coefficients.
+#[derive(Serialize)]
+pub struct Axis<'a> {
+    axis: &'a str,
+    rate_hz: f64,
+    unit: Unit,
+    octaves: Vec<Octave>,
+    method: &'static str,
+    /// The filter that was given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    filter: Option<Shape>,
+    /// The coefficients, in the order of the model.
+    pub coefficients: Vec<Term>,
+    /// χ² of the fit; `None` if the method has none.
+    pub chi2: Option<f64>,
+    /// Its degrees of freedom.
+    pub dof: Option<usize>,
+    /// The probability that χ² exceeds this one by chance.
+    pub p_value: Option<f64>,
+    /// Whether the five terms explain a valid curve; `null` if the record does not tell, or the method does not.
+    pub adequate: Option<bool>,
+    /// The factor by which intervals and bounds are widened.
+    birge_ratio: f64,
+    /// Why the curve is not valid; `null` if it is, or if the input is a curve file.
+    pub invalid: Option<&'a str>,
+    /// The covariates that were tried.
+    covariates: Vec<tried::Document>,
+    /// What the limits that were asked for say.
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    limits: &'a [Judged],
+    notes: Vec<String>,
+}
+
+#[derive(Serialize)]
+struct Octave {
+    m: u32,
+    tau_s: f64,
+    differences: u64,
+    variance: f64,
+}
+
+/// A coefficient in a unit that follows from the log's; infinite ends of an interval are `null`.
+#[derive(Serialize)]
+pub struct Term {
+    effect: &'static str,
+    /// The symbol: `N`.
+    pub symbol: &'static str,
+    /// The best estimate.
+    pub value: f64,
+    /// The lower end of the interval of 95 %.
+    pub lower: f64,
+    /// The upper end of the interval, or the upper bound.
+    pub upper: f64,
+    /// Whether it was measured.
+    #[serde(serialize_with = "state")]
+    pub state: State,
+    unit: String,
+}
+
+/// The state as documents have it.
+fn state<S: Serializer>(state: &State, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(match state {
+        State::Measured => "measured",
+        State::UpperBound => "upper_bound",
+        State::NotObservable { .. } => "not_observable",
+    })
+}
+
+/// The document of the axes of one file.
+pub fn document(fitted: &[Fitted]) -> Document<'_> {
+    Document {
+        axes: fitted.iter().map(axis).collect(),
+    }
+}
+
+fn axis(fitted: &Fitted) -> Axis<'_> {
+    let Fitted {
+        axis,
+        curve,
+        model,
+        method,
+        fit,
+        invalid,
+        tried,
+        limits,
+    } = fitted;
+    let finite = |value: f64| value.is_finite().then_some(value);
+    Axis {
+        axis: &axis.axis,
+        rate_hz: axis.rate_hz,
+        unit: axis.unit,
+        octaves: curve
+            .points()
+            .iter()
+            .map(|point| Octave {
+                m: point.m,
+                tau_s: point.tau_s,
+                differences: point.differences,
+                variance: point.variance,
+            })
+            .collect(),
+        method: method.name(),
+        filter: known_filter(model).map(Shape::of),
+        coefficients: fit
+            .coefficients
+            .iter()
+            .map(|one| term(one, axis.unit))
+            .collect(),
+        chi2: finite(fit.chi_squared),
+        dof: finite(fit.chi_squared).map(|_| fit.degrees_of_freedom),
+        p_value: finite(fit.p_value),
+        adequate: match *method {
+            _ if !fitted.is_valid() => Some(false),
+            MethodName::Covariance => fit.is_adequate(),
+            _ => None,
+        },
+        birge_ratio: fit.birge_ratio,
+        invalid: invalid.as_deref(),
+        covariates: tried.iter().map(TriedCovariate::document).collect(),
+        limits,
+        notes: invalid
+            .iter()
+            .cloned()
+            .chain(rounding::note(axis, fit).filter(|_| invalid.is_none()))
+            .chain(fitted.covariate_notes())
+            .collect(),
+    }
+}
+
+/// One coefficient.
+pub fn term(coefficient: &Coefficient, unit: Unit) -> Term {
+    Term {
+        effect: coefficient.name,
+        symbol: coefficient.symbol,
+        value: coefficient.value,
+        lower: coefficient.lower,
+        upper: coefficient.upper,
+        state: coefficient.state,
+        unit: units::unit(unit, coefficient.half_seconds),
+    }
+}

@@ -1,0 +1,194 @@
+//! The words that say what a verdict is. They stand here alone, so that text, documents, pages and pictures use the same.
+
+use crate::number::probability;
+use allanite::{diagnosis::Verdict, fit::Fit};
+
+/// What a model is that explains the record within its errors.
+pub const ADEQUATE: &str = "adequate";
+
+/// Such a model in a sentence.
+pub const ADEQUATE_MODEL: &str = "an adequate model";
+
+/// The probability from which on a model is, as a setting.
+pub const ADEQUATE_FROM: &str = "model is adequate from";
+
+/// The verdict of a record in which something happened, as it is written in files.
+pub const NOT_STATIONARY: &str = "not_stationary";
+
+/// What the verdict of such a record begins with, in words.
+pub const NOT_STATIONARY_IN_WORDS: &str = "not stationary";
+
+/// What events during a record mean for its coefficients.
+pub const MIXTURE: &str = "the record is not stationary: its coefficients are those of a mixture, so leave out the disturbed part or record again";
+
+/// That other effects would do as well as the one that was chosen.
+pub fn ambiguous(others: &str) -> String {
+    format!("ambiguous, {others} would explain the record about as well")
+}
+
+/// The verdict of a fit in a word or two: whether its model explains the record; `None` if the record does not tell.
+pub const fn word(adequate: Option<bool>) -> &'static str {
+    match adequate {
+        Some(true) => ADEQUATE,
+        Some(false) => "not adequate",
+        None => "too few octaves to judge",
+    }
+}
+
+/// The same in a sentence about the five terms.
+pub const fn explained(adequate: Option<bool>) -> &'static str {
+    match adequate {
+        Some(true) => "the five terms explain the record",
+        Some(false) => "the five terms do not explain the record",
+        None => "the record does not tell whether the five terms explain it",
+    }
+}
+
+/// The verdict of a fit with its p-value, on a screen.
+pub fn with_p(fit: &Fit) -> String {
+    let adequate = fit.is_adequate();
+    match adequate {
+        Some(_) => format!("{}, p {}", word(adequate), probability(fit.p_value)),
+        None => word(None).into(),
+    }
+}
+
+/// The verdict of a fit in a comment of an export.
+pub fn in_comment(fit: &Fit) -> String {
+    let (adequate, p) = (fit.is_adequate(), probability(fit.p_value));
+    match adequate {
+        Some(true) => format!("{} (p {p})", word(adequate)),
+        Some(false) => format!(
+            "{} (p {p}): the record has another effect, and the overbound is the safer choice",
+            word(adequate)
+        ),
+        None => too_few("model"),
+    }
+}
+
+/// The verdict of a fit below its table, of the five terms and what is before them.
+pub fn of_five_terms(behind: &str, adequate: Option<bool>) -> String {
+    match adequate {
+        Some(true) => format!("The five-term model{behind} is {ADEQUATE} for this record."),
+        Some(false) => format!(
+            "The five-term model{behind} is {}: the record has another effect, which \
+             distorts the coefficients. `compare` shows where, and `diagnose` looks for it.",
+            word(adequate)
+        ),
+        None => format!(
+            "There are too few octaves to judge the five-term model{behind}: record longer."
+        ),
+    }
+}
+
+/// That a record is too short, in a sentence.
+pub fn too_few(model: &str) -> String {
+    format!("there are too few octaves to judge the {model}")
+}
+
+/// A limit that is not decided, because the model explains too little.
+pub const UNDECIDED: &str =
+    "not decided, because the five terms do not explain the record: see `diagnose`";
+
+/// The verdicts of a diagnosis on these terms of a model with this p-value, in a sentence each.
+pub mod sentence {
+    use super::{ADEQUATE, word};
+
+    /// The terms explain the curve of a record in which something happened.
+    pub fn mixture(terms: &str, p: &str) -> String {
+        format!("its curve looks like that of the {terms} (p {p}), which stand for a mixture.")
+    }
+
+    /// The terms explain the record.
+    pub fn adequate(terms: &str, p: &str) -> String {
+        format!("the {terms} are {ADEQUATE} (p {p}): no effect is missing.")
+    }
+
+    /// The terms do not explain the record, for this reason.
+    pub fn inadequate(terms: &str, p: &str, why: &str) -> String {
+        format!("the {terms} are {} (p {p}), {why}.", word(Some(false)))
+    }
+
+    /// What was found explains the record.
+    pub fn improved(found: &str, p: &str) -> String {
+        format!("{found}; the model is {ADEQUATE} now (p {p}).")
+    }
+
+    /// What was found explains a part of it.
+    pub fn incomplete(found: &str, p: &str) -> String {
+        format!("{found}; a difference remains that no effect explains (p {p}).")
+    }
+
+    /// The record is too short.
+    pub fn too_short(terms: &str) -> String {
+        format!("{}: record longer.", super::too_few(terms))
+    }
+
+    /// The curve is not valid.
+    pub fn invalid(reason: &str) -> String {
+        format!("no effect was looked for, because the curve is not valid: {reason}.")
+    }
+
+    /// Something happened during the record, and this is said of its curve.
+    pub fn not_stationary(event: &str, of_curve: &str) -> String {
+        format!("the record is not stationary: {event}; {of_curve}")
+    }
+}
+
+/// The verdict of a diagnosis on these terms of a model as the conclusion has it, if the record is valid.
+pub fn concluded(verdict: Verdict, terms: &str, is_disturbed: bool) -> String {
+    match verdict {
+        // What happened is no part of the noise that the terms stand for.
+        Verdict::Adequate if is_disturbed => {
+            format!("its curve looks like that of the {terms}, which stand for a mixture")
+        }
+        Verdict::Adequate => format!("the {terms} explain the record, no effect is missing"),
+        Verdict::TooShort => format!("too short to judge the {terms}"),
+        Verdict::Improved => format!("the {terms} and what follows explain the record"),
+        Verdict::Unexplained => {
+            format!("the {terms} do not explain the record, and nothing in the catalogue does")
+        }
+        _ => format!("the {terms} and what follows explain a part of the record"),
+    }
+}
+
+/// The verdict of a diagnosis in a few words, with the effects that it found.
+pub fn brief(verdict: Verdict, found: &str) -> String {
+    match verdict {
+        Verdict::Invalid(reason) => format!("not valid: {reason}"),
+        Verdict::Adequate => "no effect is missing".into(),
+        Verdict::TooShort => "too short to judge".into(),
+        Verdict::Unexplained => "no known effect explains the difference".into(),
+        Verdict::Improved => format!("missing: {found}"),
+        _ => format!("missing: {found}, and more"),
+    }
+}
+
+/// The verdict of a diagnosis on the badge of a page.
+pub const fn on_badge(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Adequate => "five terms suffice",
+        Verdict::Improved => "effects found",
+        Verdict::Incomplete => "effects found, part unexplained",
+        Verdict::Unexplained => "unexplained",
+        Verdict::TooShort => "too short to judge",
+        Verdict::Invalid(_) => "record invalid",
+        _ => "unknown",
+    }
+}
+
+/// The verdict that a certificate has, with the effects that were found, which are none if the text is empty.
+pub fn certified(verdict: Option<Verdict>, found: &str) -> String {
+    match verdict {
+        None => "not diagnosed".into(),
+        Some(Verdict::Adequate) => ADEQUATE.into(),
+        Some(Verdict::Improved) if found.is_empty() => "improved".into(),
+        Some(Verdict::Improved) => format!("with {found}"),
+        Some(Verdict::Incomplete) if found.is_empty() => "incomplete".into(),
+        Some(Verdict::Incomplete) => format!("with {found}, part unexplained"),
+        Some(Verdict::Unexplained) => "unexplained".into(),
+        Some(Verdict::TooShort) => "too short to judge".into(),
+        Some(Verdict::Invalid(reason)) => format!("invalid, {reason}"),
+        Some(verdict) => verdict.name().into(),
+    }
+}

@@ -9,6 +9,7 @@ pub mod cost;
 mod dist;
 mod fleet;
 mod fuzz;
+mod hooks;
 mod miri;
 pub mod page;
 mod python;

@@ -41,8 +41,7 @@ enum Task {
     Setup,
     /// Set up, then check and test everything.
     Test,
-    /// Run a study behind the README's figures: theory, coefficients, efficiency, calibration, paper,
-    /// hidden-effect, confusion, detection, lines, clean, course, thermal, self-test, speed, precision, peers or long.
+    /// Run a study behind the figures of the pages: `cargo xtask study help` lists them.
     Study {
         /// The study and its options; `--help` lists them.
         #[arg(trailing_var_arg = true, allow_hyphen_values = true, required = true)]

@@ -8,8 +8,8 @@ use core::fmt;
 /// The name of an effect and its relations to others: everything about it except its mathematics.
 ///
 /// Each effect has one static of this type, at one address. The format of certificates, the command line, the search for
-/// shapes, the simulator and the reports read it, so that none of them needs to know any effect by
-/// name.
+/// shapes and the reports read it, and name no effect. Only the simulator names some: the digital filters that it runs
+/// sample by sample.
 pub struct Description {
     /// The name in files and on the command line: lower case with underscores, such as
     /// `angle_random_walk`. No two effects share a name.

@@ -1,6 +1,6 @@
 //! The pages are written in plain sentences: words that stand for a mannerism of this project stay rare.
 
-use crate::page::{Page, pages};
+use crate::page::{Page, files, pages, text};
 
 /// A mannerism: the phrases that count for it, and how many of them a thousand words of all pages may have.
 struct Mannerism {
@@ -82,6 +82,35 @@ fn mannerisms_are_rare() {
             "{phrases:?} stand {found} times in {all} words: {places:?}"
         );
     }
+}
+
+/// How many words of [`MANNERISMS`]' first row a thousand words of the documentation in the sources may have.
+const IN_SOURCES: f64 = 0.7;
+
+#[test]
+fn the_first_mannerism_is_rare_in_the_documentation_of_sources() {
+    let (mut all, mut found) = (0, 0);
+    for path in files("rs").iter().filter(|path| path.starts_with("src/")) {
+        let source = text(path);
+        let lines = source.lines().map(str::trim_start);
+        let comments = lines.filter_map(|line| {
+            line.strip_prefix("///")
+                .or_else(|| line.strip_prefix("//!"))
+        });
+        let page = Page {
+            path: path.clone(),
+            text: comments.collect::<Vec<_>>().join("\n"),
+        };
+        let words = words(&page);
+        let phrases = MANNERISMS[0].phrases.iter();
+        all += words.len();
+        found += phrases.map(|phrase| count(&words, phrase)).sum::<usize>();
+    }
+    assert!(all > 50_000, "{all} words");
+    assert!(
+        found as f64 <= IN_SOURCES * all as f64 / 1000.0,
+        "{found} in {all} words"
+    );
 }
 
 #[test]

@@ -28,5 +28,7 @@ fn git(arguments: &[&str]) -> Result<String> {
         .output()
         .context("git")?;
     anyhow::ensure!(output.status.success(), "git {}", arguments.join(" "));
-    Ok(String::from_utf8_lossy(&output.stdout).trim_end().to_owned())
+    Ok(String::from_utf8_lossy(&output.stdout)
+        .trim_end()
+        .to_owned())
 }

@@ -1,7 +1,7 @@
 //! Times the accumulator per sample on this host. `cargo xtask bench` reads the output.
 
 use allanite::Accumulator;
-use host_tests::demonstration::{AMPLITUDES, simulated::SimulatedGyro};
+use demonstration::{AMPLITUDES, simulated::SimulatedGyro};
 use std::{hint::black_box, time::Instant};
 
 const SAMPLES: usize = 1 << 22;

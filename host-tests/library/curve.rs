@@ -1,14 +1,11 @@
 //! Compares the curve with the published figures of the 1000-point test set, and checks what a
 //! curve refuses.
 
-#[path = "common/precision.rs"]
-mod precision;
-
+use crate::common::precision::double;
 use allanite::{
     Accumulator, Comparison, Curve, Error, Model, Real, Scale,
     fit::{Options, fit},
 };
-use precision::double;
 
 /// Several roundings of a result.
 const ROUNDING: f64 = if size_of::<Real>() == 8 { 1e-12 } else { 1e-6 };

@@ -1,17 +1,12 @@
 //! Snapshots are exact, and are refused if anything has changed.
 
-#[path = "common/sealed.rs"]
-mod sealed;
-#[path = "common/seeded.rs"]
-mod seeded;
-
+use crate::common::sealed::sealed;
+use crate::common::seeded::seeded;
 use allanite::{
     Accumulator, Scale,
     storage::{Error, Snapshot, SnapshotInterval},
 };
 use proptest::{collection::vec, prelude::*};
-use sealed::sealed;
-use seeded::seeded;
 use std::num::NonZeroU64;
 
 fn snapshot<const OCTAVES: usize>(accumulator: &Accumulator<OCTAVES>) -> Vec<u8> {

@@ -30,7 +30,7 @@ use xtask::firmware::c_library::replay as replay_in_c;
 /// Checks every file of a corpus, and so many changed copies of each.
 fn replay(name: &str, changed: u64, check: fn(&[u8])) {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("fuzz/corpus")
+        .join("../fuzz/corpus")
         .join(name);
     let mut checked = 0;
     for entry in fs::read_dir(folder).unwrap() {
@@ -72,7 +72,7 @@ fn axes_follow_the_description_of_the_gate() {
 fn calls_from_c_in_any_order_are_answered() {
     let said = replay_in_c(
         Path::new(env!("CARGO_MANIFEST_DIR"))
-            .join("fuzz/corpus/c")
+            .join("../fuzz/corpus/c")
             .as_path(),
     );
     let said = said.unwrap_or_else(|error| panic!("{error:#}"));

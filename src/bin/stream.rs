@@ -1,5 +1,5 @@
 //! An image that sends the counts of a simulated gyro for as long as a host reads them. Each count is a line
-//! of text, as a firmware would send it through a serial port: `cargo allanite watch --image`.
+//! of text, as a firmware would send it through a serial port: `cargo xtask watch --rate 100`.
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 

@@ -1,9 +1,10 @@
 //! The aggregate functions.
 
 use crate::{
-    arguments::{Argument, coerced, counts},
+    arguments::coerced,
+    failure::refused,
     groups::{Groups, One},
-    refused,
+    rows::Rows,
 };
 use datafusion::{
     arrow::datatypes::{DataType, Field, FieldRef},
@@ -14,17 +15,6 @@ use datafusion::{
     },
 };
 use std::sync::Arc;
-
-/// What a row of the input is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(crate) enum Rows {
-    /// The number of a first sample, and a list of counts.
-    Batches,
-    /// The number of a sample, and its count.
-    Samples,
-    /// A state.
-    States,
-}
 
 /// An aggregate function whose result is a state.
 #[derive(Debug, PartialEq, Eq, Hash)]
@@ -46,19 +36,6 @@ pub(crate) fn all() -> [Aggregate; 3] {
         aggregate("allan_state_of_samples", Rows::Samples),
         aggregate("allan_merge", Rows::States),
     ]
-}
-
-impl Rows {
-    /// The columns of a row.
-    fn columns(self) -> Vec<Argument> {
-        let (first, second) = match self {
-            Self::Batches => (("start", DataType::Int64), ("counts", counts())),
-            Self::Samples => (("number", DataType::Int64), ("count", DataType::Int32)),
-            Self::States => return vec![("state", DataType::Binary)],
-        };
-        let of_sensor = ["rate", "scale"].map(|name| (name, DataType::Float64));
-        [vec![first, second], of_sensor.to_vec()].concat()
-    }
 }
 
 impl AggregateUDFImpl for Aggregate {

@@ -1,6 +1,11 @@
 //! The functions of a state: how many samples it has, its fit and its diagnosis.
 
-use crate::{arguments::coerced, raised, refused};
+use crate::{
+    arguments::coerced,
+    failure::{raised, refused},
+};
+use allanite_cli::command::interface::Record;
+use allanite_log::{failure::Failure, pieces::Pieces};
 use datafusion::{
     arrow::{
         array::{
@@ -13,7 +18,6 @@ use datafusion::{
     error::{DataFusionError, Result},
     logical_expr::{ColumnarValue, ScalarFunctionArgs, ScalarUDFImpl, Signature, Volatility},
 };
-use host_tests::{command::interface::Record, failure::Failure, pieces::Pieces};
 use serde_json::{Value, json};
 use std::sync::Arc;
 

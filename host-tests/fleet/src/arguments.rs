@@ -1,6 +1,6 @@
 //! The arguments of the functions.
 
-use crate::refused;
+use crate::failure::refused;
 use datafusion::{
     arrow::datatypes::{DataType, Field},
     error::Result,

@@ -1,8 +1,8 @@
 //! The state of one axis while rows arrive.
 
-use crate::{raised, refused};
+use crate::failure::{raised, refused};
+use allanite_log::pieces::{Gathered, Pieces};
 use datafusion::error::Result;
-use host_tests::pieces::{Gathered, Pieces};
 
 /// The samples of one axis of one device, as far as they were read.
 #[derive(Debug)]

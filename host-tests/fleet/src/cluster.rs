@@ -1,6 +1,6 @@
 //! Clusters of [Ballista](ballista): a scheduler and executors that know the functions, and sessions that ask them.
 
-use crate::register;
+use crate::functions::register;
 use ballista::prelude::SessionContextExt;
 use ballista_core::{
     ConfigProducer,

@@ -1,6 +1,9 @@
 //! The states of all axes that a query has begun.
 
-use crate::{aggregate::Rows, axis::Axis, rows::Columns};
+use crate::{
+    axis::Axis,
+    rows::{Columns, Rows},
+};
 use datafusion::{
     arrow::array::{Array, ArrayRef, BinaryBuilder, BooleanArray},
     error::Result,

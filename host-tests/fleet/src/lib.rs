@@ -6,7 +6,7 @@
 //! FROM logs GROUP BY device, axis
 //! ```
 //!
-//! A state is what [`Pieces`](host_tests::pieces::Pieces) keep of one axis, as bytes in a column. It does not depend on how the
+//! A state is what [`Pieces`](allanite_log::pieces::Pieces) keep of one axis, as bytes in a column. It does not depend on how the
 //! rows are partitioned, and states merge in any order, so that an engine may cut, shuffle and repeat as it likes. The package
 //! for Python has the same functions with the same bytes.
 //!
@@ -24,37 +24,9 @@ mod answer;
 mod arguments;
 mod axis;
 pub mod cluster;
+mod failure;
+mod functions;
 mod groups;
 mod rows;
 
-use datafusion::{
-    error::{DataFusionError, Result},
-    execution::FunctionRegistry,
-    logical_expr::{AggregateUDF, ScalarUDF},
-};
-use host_tests::failure::Failure;
-use std::sync::Arc;
-
-/// Gives a session, a scheduler or an executor the functions.
-///
-/// # Errors
-/// When the registry takes no functions.
-pub fn register(registry: &mut dyn FunctionRegistry) -> Result<()> {
-    for aggregate in aggregate::all() {
-        registry.register_udaf(Arc::new(AggregateUDF::from(aggregate)))?;
-    }
-    for answer in answer::all() {
-        registry.register_udf(Arc::new(ScalarUDF::from(answer)))?;
-    }
-    Ok(())
-}
-
-/// A failure of the host library as an error of the engine.
-fn raised(failure: Failure) -> DataFusionError {
-    DataFusionError::External(Box::new(failure))
-}
-
-/// An input that a function cannot use, and what to do about it.
-fn refused(what: impl std::fmt::Display, remedy: &str) -> DataFusionError {
-    raised(Failure::option(what.to_string(), remedy))
-}
+pub use functions::register;

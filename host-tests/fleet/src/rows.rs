@@ -1,16 +1,44 @@
 //! The rows of a batch of the engine, as its columns lie in memory.
 
-use crate::{aggregate::Rows, axis::Axis, refused};
+use crate::{
+    arguments::{Argument, counts},
+    axis::Axis,
+    failure::refused,
+};
 use datafusion::{
     arrow::{
         array::{
             Array, ArrayRef, AsArray, BinaryArray, Int32Array, Int64Array, ListArray,
             PrimitiveArray,
         },
-        datatypes::{Float64Type, Int32Type, Int64Type},
+        datatypes::{DataType, Float64Type, Int32Type, Int64Type},
     },
     error::{DataFusionError, Result},
 };
+
+/// What a row of the input is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum Rows {
+    /// The number of a first sample, and a list of counts.
+    Batches,
+    /// The number of a sample, and its count.
+    Samples,
+    /// A state.
+    States,
+}
+
+impl Rows {
+    /// The columns of a row.
+    pub(crate) fn columns(self) -> Vec<Argument> {
+        let (first, second) = match self {
+            Self::Batches => (("start", DataType::Int64), ("counts", counts())),
+            Self::Samples => (("number", DataType::Int64), ("count", DataType::Int32)),
+            Self::States => return vec![("state", DataType::Binary)],
+        };
+        let of_sensor = ["rate", "scale"].map(|name| (name, DataType::Float64));
+        [vec![first, second], of_sensor.to_vec()].concat()
+    }
+}
 
 /// The columns of a batch, of the types that [`Rows`] has.
 pub(crate) enum Columns<'a> {

@@ -2,12 +2,12 @@
 //! line.
 
 use allanite::effect::CATALOGUE;
-use host_tests::{
-    command::explore::{Session, What},
-    program::ADIS16405,
-};
+use allanite_cli::command::explore::{Session, What};
 use serde_json::{Value, json};
 use std::{path::Path, sync::OnceLock};
+
+/// Curves of a real gyro.
+const ADIS16405: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../data/adis16405.json");
 
 const ASKED: [What; 3] = [What::Fit, What::Drawing, What::Table];
 
@@ -60,7 +60,7 @@ fn damaged(text: &str, bytes: &[u8]) -> Vec<u8> {
 }
 
 /// An answer has the form of its kind, and a refusal is one line of text.
-fn judge(what: What, answered: Result<Vec<u8>, host_tests::failure::Failure>) {
+fn judge(what: What, answered: Result<Vec<u8>, allanite_log::failure::Failure>) {
     let answer = match answered {
         Ok(answer) => String::from_utf8(answer).expect("text"),
         Err(failure) => {

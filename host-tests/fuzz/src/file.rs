@@ -1,9 +1,7 @@
 //! Logs of every kind that has no optional part, and curve files, of any contents.
 
-use host_tests::{
-    curve_file::CurveFile,
-    log::{self, Options},
-};
+use allanite_host::curve_file::CurveFile;
+use allanite_log::{self as log, Options};
 use indicatif::ProgressBar;
 use std::fs;
 

@@ -21,7 +21,7 @@ fn main() -> ExitCode {
         Ok(code) => code,
         Err(error) => {
             eprintln!(
-                "launch: {error}; `cargo run -p host-tests --bin allanite` runs the program, too"
+                "launch: {error}; `cargo run -p allanite-cli --bin allanite` runs the program, too"
             );
             ExitCode::FAILURE
         }
@@ -36,7 +36,7 @@ fn run() -> io::Result<ExitCode> {
     let target = here.ancestors().nth(2).map(PathBuf::from);
     let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../Cargo.toml");
     let mut build = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-    build.args(["build", "--profile", "quick", "--package", "host-tests"]);
+    build.args(["build", "--package", "allanite-cli"]);
     build.args(["--bin", "allanite"]).args(options);
     build.arg("--manifest-path").arg(workspace);
     if let Some(target) = target {

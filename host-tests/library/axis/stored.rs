@@ -1,6 +1,7 @@
 //! Axes after a reset, a merge, or a snapshot that is restored.
 
-use super::{Counts, OCTAVES, Whole, plan, rest, scale, seeded::seeded};
+use super::{Counts, OCTAVES, Whole, plan, rest, scale};
+use crate::common::seeded::seeded;
 use allanite::{
     Axes, Axis,
     axis::{Courses, GatePart},

@@ -1,10 +1,7 @@
 //! Damages stores at random. Every one of them saves again, and keeps what was not damaged.
 
-use super::{
-    AXES, Axis, OCTAVES, PAGES, buffer, newest,
-    ram_flash::{PAGE, PowerCut, RamFlash},
-    run, states, store,
-};
+use super::{AXES, Axis, OCTAVES, PAGES, buffer, newest, run, states, store};
+use crate::common::ram_flash::{PAGE, PowerCut, RamFlash};
 use allanite::storage::{SnapshotStore, StoreError};
 use pollster::block_on;
 

@@ -3,8 +3,8 @@
 use super::{
     AXES,
     damage::{Damage, Random, damage},
-    ram_flash::{PowerCut, RamError, RamFlash},
 };
+use crate::common::ram_flash::{PowerCut, RamError, RamFlash};
 use allanite::storage::{Error, SnapshotStore, StoreError};
 use pollster::block_on;
 

@@ -3,8 +3,8 @@
 use super::{
     definition::{octaves, square},
     events::{check, counts, events, play},
-    seeded::seeded,
 };
+use crate::common::seeded::seeded;
 use allanite::Accumulator;
 use proptest::{collection::vec, prelude::*};
 

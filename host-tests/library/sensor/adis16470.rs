@@ -1,7 +1,7 @@
 //! The ADIS16470, simulated frame by frame and independently of the library.
 
-use crate::precision::double;
-use crate::wire::Fault;
+use super::wire::Fault;
+use crate::common::precision::double;
 use allanite::sensor::{Adis16470, Error, Loss, Reading};
 use allanite::{Accumulator, Axes};
 use embedded_hal::spi;

@@ -1,7 +1,7 @@
 //! The BMI270, which takes nothing but power modes before its configuration file was uploaded. The chip is simulated by
 //! Bosch's SensorAPI and independently of the library.
 
-use crate::wire::Fault;
+use super::wire::Fault;
 use allanite::sensor::{
     AsyncRegisters, CATALOGUE, Description, Error, Flaw, I2cBus, Imu, Loss, Reading, Registers,
     SpiBus, bmi270,

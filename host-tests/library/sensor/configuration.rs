@@ -1,8 +1,8 @@
 //! Configurations: what follows from them, and what is refused.
 
-use crate::chip::{KINDS, Kind};
-use crate::precision::double;
-use crate::wire::{NoDelay, Wire};
+use super::chip::{KINDS, Kind};
+use super::wire::{NoDelay, Wire};
+use crate::common::precision::double;
 use allanite::Real;
 use allanite::sensor::{
     CATALOGUE, Configuration, ConfigurationError, Description, FifoImu, Flaw, LSM6DSO, Writes,

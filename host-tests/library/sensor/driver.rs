@@ -1,8 +1,8 @@
 //! The set-ups of published drivers, register by register, beside those of this library for the same rate and
 //! range. What differs is named with its reason, and a difference that is not named fails.
 
-use crate::chip::Kind;
-use crate::wire::{NoDelay, Wire};
+use super::chip::Kind;
+use super::wire::{NoDelay, Wire};
 use allanite::sensor::{
     Configuration, Description, FifoImu, Imu, icm_42688_p, icm_45686, lsm6dso, lsm6dsv16x,
 };

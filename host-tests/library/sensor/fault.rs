@@ -1,8 +1,8 @@
 //! A fault at every transfer of a start and of bursts, on either bus, blocking and asynchronous: the source stays
 //! usable, the loss is told in number, and no sample comes twice.
 
-use crate::chip::{KINDS, Kind, gyro, number};
-use crate::wire::{Fault, NoDelay, Wire};
+use super::chip::{KINDS, Kind, gyro, number};
+use super::wire::{Fault, NoDelay, Wire};
 use allanite::Axes;
 use allanite::sensor::{AsyncRegisters, Error, FifoImu, Loss, Malformed, Registers};
 use pollster::block_on;

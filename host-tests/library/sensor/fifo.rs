@@ -1,8 +1,8 @@
 //! Bursts from the FIFOs of simulated sensors: every sample once, losses known in number, and clocks that disagree.
 
-use crate::chip::{KINDS, Kind, gyro, number};
-use crate::precision::double;
-use crate::wire::{Fault, NoDelay, Wire};
+use super::chip::{KINDS, Kind, gyro, number};
+use super::wire::{Fault, NoDelay, Wire};
+use crate::common::precision::double;
 use allanite::sensor::{FifoImu, Loss, SpiBus};
 use allanite::{Accumulator, Axes, Error};
 use std::collections::BTreeSet;

@@ -1,7 +1,7 @@
 //! Buses that answer nonsense: the library neither panics nor loops, and every burst ends.
 
-use crate::chip::{KINDS, Kind, number};
-use crate::wire::{NoDelay, Wire};
+use super::chip::{KINDS, Kind, number};
+use super::wire::{NoDelay, Wire};
 use allanite::Axes;
 use allanite::sensor::{CATALOGUE, FifoImu, I2cBus, Imu, SpiBus};
 use embedded_hal::{i2c, spi};

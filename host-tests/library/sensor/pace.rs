@@ -1,7 +1,7 @@
 //! Timestamps reveal skipped samples, and a rate that differs from the configured one.
 
-use crate::precision::double;
-use crate::sheet::{Sheet, start};
+use super::sheet::{Sheet, start};
+use crate::common::precision::double;
 use allanite::sensor::{ICM_42688_P, Loss, Pace};
 use allanite::{Axes, Error, Real};
 

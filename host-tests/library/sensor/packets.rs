@@ -1,7 +1,7 @@
 //! A FIFO whose packets the program decodes itself, beside the same FIFO read by the library's format.
 
-use crate::chip::Kind;
-use crate::wire::{NoDelay, Wire};
+use super::chip::Kind;
+use super::wire::{NoDelay, Wire};
 use allanite::sensor::{
     Description, Fifo, FifoImu, Flaw, Format, ICM_42688_P, Malformed, Packet, PacketCount,
     PacketFormat, Packets, Reading, SpiBus,

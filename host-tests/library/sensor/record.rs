@@ -1,6 +1,6 @@
 //! Samples on their way to accumulators: flags, overruns, failing buses, and other drivers.
 
-use crate::sheet::{Sheet, start};
+use super::sheet::{Sheet, start};
 use allanite::sensor::{BMI160, Error, L3GD20, MPU_6050};
 use allanite::{Accumulator, Axes};
 use embedded_hal::i2c::{ErrorKind, NoAcknowledgeSource};

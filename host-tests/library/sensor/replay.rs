@@ -1,7 +1,7 @@
 //! Conversations with the FIFO of each sensor, byte by byte as the data sheet has them, replayed over mocked buses.
 
-use crate::sheet::Sheet;
-use crate::wire::NoDelay;
+use super::sheet::Sheet;
+use super::wire::NoDelay;
 use allanite::sensor::{
     Description, FifoImu, I2cBus, ICM_42688_P, ICM_45686, LSM6DSO, LSM6DSV16X, Loss, Malformed,
     Reading, SpiBus,

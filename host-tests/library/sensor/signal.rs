@@ -1,7 +1,7 @@
 //! Waiting for the sensor's interrupt pin.
 
-use crate::chip::{KINDS, Kind};
-use crate::wire::{NoDelay, Wire};
+use super::chip::{KINDS, Kind};
+use super::wire::{NoDelay, Wire};
 use allanite::sensor::{BMI160, CATALOGUE, Error, FifoImu, Imu, L3GD20, Signal};
 use embedded_hal::digital::{ErrorKind, ErrorType};
 use embedded_hal_async::digital::Wait;

@@ -1,7 +1,7 @@
 //! A fault at every transfer of single samples, blocking and asynchronous.
 
-use crate::chip::KINDS;
-use crate::wire::{Fault, NoDelay, Wire};
+use super::chip::KINDS;
+use super::wire::{Fault, NoDelay, Wire};
 use allanite::sensor::{Error, Imu};
 use pollster::block_on;
 

@@ -1,7 +1,7 @@
 //! Starts sensors over either bus, from the identity to the first sample, and checks why a start
 //! may fail.
 
-use crate::sheet::{SHEETS, Sheet, start};
+use super::sheet::{SHEETS, Sheet, start};
 use allanite::sensor::{
     BMI160, ByteOrder, CATALOGUE, Description, Error, Filter, I2cBus, ICM_42688_P, Imu, Interface,
     LSM6DSO, MPU_6500, SpiBus, Status, Temperature, Writes,

@@ -1,6 +1,6 @@
 //! Tests the scales of gyro and temperature counts.
 
-use crate::precision::double;
+use crate::common::precision::double;
 use allanite::Real;
 use allanite::sensor::{
     BMI160, CATALOGUE, Description, ICM_20602, ICM_42688_P, L3GD20, LSM6DSO, LSM9DS1, MPU_6050,

@@ -1,6 +1,6 @@
 //! A bus to a simulated sensor, whose transfers can fail or stall one by one.
 
-use crate::chip::{Chip, Kind};
+use super::chip::{Chip, Kind};
 use allanite::sensor::{I2cBus, SpiBus};
 use embedded_hal::{i2c, spi};
 use std::{cell::RefCell, rc::Rc};

@@ -1,6 +1,6 @@
 //! Tests `certify`: the certificate of a record says what `diagnose` says of it, and `lot` takes either.
 
-use host_tests::program::{ADIS16405, json, output, refusal, run};
+use program::{ADIS16405, json, output, refusal, run};
 use serde_json::Value;
 use std::{fs, path::Path};
 use tempfile::TempDir;

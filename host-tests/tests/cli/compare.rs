@@ -1,7 +1,7 @@
 //! Tests `compare`: models with and without effects are compared with the curve they were fitted
 //! to, or with another.
 
-use host_tests::program::{ADIS16405, json, output, refusal};
+use program::{ADIS16405, json, output, refusal};
 use serde_json::Value;
 use std::path::Path;
 use tempfile::TempDir;

@@ -1,11 +1,8 @@
 //! A curve file holds all that a fit needs, to the bit, and impossible values are refused.
 
 use allanite::course::Course;
-use host_tests::{
-    curve_file::{AxisCurve, CurveFile, FORMAT, VERSION},
-    log::{Axis, Evidence, OCTAVES, SpectrumSums},
-    unit::Unit,
-};
+use allanite_host::curve_file::{AxisCurve, CurveFile, FORMAT, VERSION};
+use allanite_log::{Axis, Evidence, OCTAVES, SpectrumSums, unit::Unit};
 use std::{fs, path::Path};
 use tempfile::TempDir;
 
@@ -313,7 +310,7 @@ fn text_that_is_not_a_curve_file_is_refused_with_its_line() {
 
 #[test]
 fn curve_files_of_real_gyros_are_complete_and_name_their_source() {
-    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("data");
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../data");
     for (name, samples, rate_hz) in [
         ("adis16405.json", 1_000_000, 100.0),
         ("mpu6050.json", 64_906, 99.32),

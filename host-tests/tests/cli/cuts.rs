@@ -1,6 +1,6 @@
 //! Parts of a log that are left out with `--from`, `--to` and `--drop`, and messages that tell which.
 
-use host_tests::program::{json, output, refusal, run};
+use program::{json, output, refusal, run};
 use serde_json::Value;
 use std::{fmt::Write as _, fs, path::Path};
 use tempfile::TempDir;

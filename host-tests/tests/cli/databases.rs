@@ -1,6 +1,6 @@
 //! Reads bags that are databases without a trace beside them, whatever state they are in.
 
-use host_tests::program::{output, refusal};
+use program::{output, refusal};
 use rusqlite::Connection;
 use std::{
     fs,
@@ -10,7 +10,7 @@ use tempfile::TempDir;
 
 const HUMBLE: &str = concat!(
     env!("CARGO_MANIFEST_DIR"),
-    "/tests/fixtures/origins/humble.db3"
+    "/../tests/fixtures/origins/humble.db3"
 );
 
 /// A folder with a copy of a bag.

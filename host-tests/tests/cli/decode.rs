@@ -1,12 +1,11 @@
 //! Tests `decode` on whole and broken certificates and snapshots, one file and many.
 
-use crate::factory;
-use crate::factory::{SINUSOID, axis, encoded, followed, record};
+use crate::factory::{self, SINUSOID, axis, encoded, followed, record};
 use allanite::{
     effect::{CATALOGUE, Effect, GaussMarkov, LowPass},
     storage::{AxisCertificate, CertifiedBand, Doubt, EffectCode, RateUnit},
 };
-use host_tests::program::{json, output, refusal, run};
+use program::{json, output, refusal, run};
 use std::{fs, sync::LazyLock};
 use tempfile::TempDir;
 

@@ -6,13 +6,14 @@ use allanite::{
     diagnosis::{Options, Step, alternative},
     effect::CATALOGUE,
 };
-use host_tests::program::{ADIS16405, json, output, refusal};
-use host_tests::{curve_file::CurveFile, diagnosis::diagnose, log::OCTAVES};
+use allanite_host::{curve_file::CurveFile, diagnosis::diagnose};
+use allanite_log::OCTAVES;
+use program::{ADIS16405, json, output, refusal};
 use serde_json::Value;
 use std::path::Path;
 use tempfile::TempDir;
 
-const MPU6050: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/mpu6050.json");
+const MPU6050: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../data/mpu6050.json");
 
 fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or_else(|| panic!("{value}"))

@@ -3,7 +3,7 @@
 use crate::drawing::{
     coordinate, dots, drawn, elements, frames, labels, labels_below, number, part, simulate,
 };
-use host_tests::program::{ADIS16405, json, refusal};
+use program::{ADIS16405, json, refusal};
 use roxmltree::Document;
 use serde_json::Value;
 use std::fs;

@@ -1,8 +1,10 @@
 //! The page without a server: a log that is dropped on it gives what the command line gives, byte by byte.
 
-use crate::browser::Browser;
-use crate::whole_page::{choose, empty};
-use host_tests::program::{command, output};
+use crate::{
+    browser::Browser,
+    whole_page::{choose, empty},
+};
+use program::{command, output};
 use serde_json::json;
 use std::{
     fs, thread,

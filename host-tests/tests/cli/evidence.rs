@@ -1,7 +1,7 @@
 //! Tests `diagnose` with the evidence beside the curve: whether the record is valid, and whether it
 //! depends on a covariate.
 
-use host_tests::program::{json, measure_without_spectrum, output, refusal, run};
+use program::{json, measure_without_spectrum, output, refusal, run};
 use serde_json::Value;
 use std::{fs, path::Path};
 use tempfile::TempDir;

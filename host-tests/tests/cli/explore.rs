@@ -1,8 +1,10 @@
 //! Tests the page of `explore`: in a browser, effects are added and moved by hand as a user does it.
 
-use crate::browser::Browser;
-use crate::whole_page::{self, explored, settle};
-use host_tests::program::{ADIS16405, json, output, refusal};
+use crate::{
+    browser::Browser,
+    whole_page::{self, explored, settle},
+};
+use program::{ADIS16405, json, output, refusal};
 use serde_json::{Value, json};
 use std::{
     fs,

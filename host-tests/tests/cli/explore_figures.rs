@@ -1,8 +1,10 @@
 //! The figures of `explore`: a peak becomes a line, χ² falls in stairs, and many records are at hand on any screen.
 
-use crate::browser::Browser;
-use crate::whole_page::{self, explored};
-use host_tests::program::{ADIS16405, output};
+use crate::{
+    browser::Browser,
+    whole_page::{self, explored},
+};
+use program::{ADIS16405, output};
 use serde_json::{Value, json};
 use std::{
     path::Path,

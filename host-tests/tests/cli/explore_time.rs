@@ -1,9 +1,11 @@
 //! The page of `explore`: what follows the temperature is taken out, the record is seen over time and cut there, and words explain
 //! themselves.
 
-use crate::browser::Browser;
-use crate::whole_page::{choose, empty, explored, settle};
-use host_tests::program::{json, output};
+use crate::{
+    browser::Browser,
+    whole_page::{choose, empty, explored, settle},
+};
+use program::{json, output};
 use serde_json::{Value, json};
 use std::{
     path::Path,

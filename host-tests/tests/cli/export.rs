@@ -1,6 +1,6 @@
 //! Reads every export format back as its consumer does.
 
-use host_tests::program::{ADIS16405, json, output, refusal};
+use program::{ADIS16405, json, output, refusal};
 use saphyr::{LoadableYamlNode, Yaml};
 use serde_json::Value;
 use std::{collections::HashMap, fs, path::Path, process::Command};

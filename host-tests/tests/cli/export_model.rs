@@ -1,6 +1,6 @@
 //! `export` writes the model that the diagnosis finds, and refuses what it cannot explain.
 
-use host_tests::program::{ADIS16405, json, output, refusal};
+use program::{ADIS16405, json, output, refusal};
 use saphyr::{LoadableYamlNode, Yaml};
 use serde_json::Value;
 use std::path::Path;

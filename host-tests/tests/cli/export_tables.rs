@@ -1,6 +1,6 @@
 //! The CSV tables of the spectrum and of the course agree with the diagnosis and with the log.
 
-use host_tests::program::{json, output};
+use program::{json, output};
 use serde_json::Value;
 use std::{fs, path::Path};
 use tempfile::TempDir;

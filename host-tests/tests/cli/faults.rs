@@ -1,6 +1,6 @@
 //! What the program says of records whose logger repeated, held, clipped or cut out samples.
 
-use host_tests::program::{json, output, run};
+use program::{json, output, run};
 use serde_json::Value;
 use std::{fs, path::Path};
 use tempfile::TempDir;

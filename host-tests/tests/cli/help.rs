@@ -1,8 +1,8 @@
 //! Tests the help and the notes of the program.
 
+use allanite_cli::command::CommandLine;
 use clap::{CommandFactory, Parser};
-use host_tests::command::CommandLine;
-use host_tests::program::{self, output};
+use program::output;
 use std::{
     fs,
     path::Path,

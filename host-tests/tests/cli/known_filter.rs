@@ -1,6 +1,6 @@
 //! Tests `--filter`: a filter that is known belongs to the model, and one that does not fit is refused with what fits.
 
-use host_tests::program::{json, output, refusal};
+use program::{json, output, refusal};
 use serde_json::Value;
 use std::path::Path;
 use tempfile::TempDir;

@@ -1,6 +1,6 @@
 //! `fit --limit`: the verdicts of a station, and the exit status that tells them.
 
-use host_tests::program::{ADIS16405, output, refusal, run};
+use program::{ADIS16405, output, refusal, run};
 use serde_json::Value;
 use std::path::Path;
 use tempfile::TempDir;

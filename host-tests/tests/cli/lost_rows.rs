@@ -1,6 +1,6 @@
 //! Logs with rows that hold no sample, of other forms, and from a pipe.
 
-use host_tests::program::{command, json, output, piped, refusal, run};
+use program::{command, json, output, piped, refusal, run};
 use std::{fmt::Write as _, fs, io::Write as _};
 use tempfile::TempDir;
 

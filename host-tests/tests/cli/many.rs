@@ -1,7 +1,7 @@
 //! Tests commands with many files: every good file is processed, and results are printed in the
 //! order of the arguments.
 
-use host_tests::program::{command, json, output, refusal};
+use program::{command, json, output, refusal};
 use serde_json::Value;
 use std::{fs, path::Path};
 use tempfile::TempDir;

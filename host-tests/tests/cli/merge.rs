@@ -1,6 +1,6 @@
 //! Tests `merge`: curves of parts of a record are those of the whole, in any order.
 
-use host_tests::program::{output, refusal};
+use program::{output, refusal};
 use serde_json::Value;
 use std::{fmt::Write as _, fs, path::Path};
 use tempfile::TempDir;

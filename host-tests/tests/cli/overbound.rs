@@ -1,20 +1,20 @@
 //! Overbounds lie above the curve everywhere, and no higher than necessary.
 
 use allanite::{Curve, Model, fit::Options};
-use host_tests::{
+use allanite_host::{
     confidence::{Limits, limits},
     curve_file::CurveFile,
     equivalent::Equivalent,
-    log::OCTAVES,
     overbound::Overbound,
 };
+use allanite_log::OCTAVES;
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use std::path::Path;
 
 /// The curves of real gyros with their limits.
 fn curves() -> Vec<(Curve<OCTAVES>, Vec<Limits>)> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("data");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../data");
     let model = Model::ieee_952();
     let files = ["adis16405.json", "mpu6050.json"].map(|name| CurveFile::read(&folder.join(name)));
     let axes = files.into_iter().flat_map(|file| file.unwrap().axes);

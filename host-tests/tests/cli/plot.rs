@@ -1,6 +1,6 @@
 //! The plot of a record agrees with its figures and its text.
 
-use host_tests::program::{self, ADIS16405, json, output, refusal};
+use program::{ADIS16405, json, output, refusal};
 use resvg::tiny_skia::Pixmap;
 use roxmltree::Document;
 use serde_json::Value;

@@ -1,7 +1,7 @@
 //! The READMEs and the crate's page show what their readers will see.
 
 use clap::Parser as _;
-use host_tests::program::output;
+use program::output;
 use std::{fs, path::Path};
 use xtask::{
     CommandLine, cost,
@@ -12,7 +12,7 @@ use xtask::{
     },
 };
 
-const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
+const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
 
 /// The project's page.
 const README: &str = "README.md";

@@ -3,7 +3,7 @@
 use crate::drawing::{
     coordinate, dots, drawn, elements, frames, labels, labels_below, number, part, simulate,
 };
-use host_tests::program::{json, output};
+use program::{json, output};
 use roxmltree::Document;
 use std::{fs, path::Path};
 use tempfile::TempDir;

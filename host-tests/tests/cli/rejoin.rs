@@ -1,6 +1,6 @@
 //! Tests `measure --part`: parts of a record that are rejoined are the record, to the bit.
 
-use host_tests::program::{output, refusal};
+use program::{output, refusal};
 use std::{fmt::Write as _, fs, path::Path};
 use tempfile::TempDir;
 

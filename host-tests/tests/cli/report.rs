@@ -1,9 +1,11 @@
 //! Tests `report`: the page contains the results of `diagnose`, is accessible, and can be stepped
 //! through.
 
-use crate::browser::Browser;
-use crate::page::{embedded, number, opened, reported, simulate, steps};
-use host_tests::program::{ADIS16405, measure_without_spectrum, output, refusal};
+use crate::{
+    browser::Browser,
+    page::{embedded, number, opened, reported, simulate, steps},
+};
+use program::{ADIS16405, measure_without_spectrum, output, refusal};
 use serde_json::Value;
 use std::fs;
 use tempfile::TempDir;

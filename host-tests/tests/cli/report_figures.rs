@@ -1,8 +1,10 @@
 //! The figures of a page of `report` agree with the diagnosis, and show where an error falls.
 
-use crate::browser::Browser;
-use crate::page::{embedded, number, opened, reported, simulate, steps};
-use host_tests::program::ADIS16405;
+use crate::{
+    browser::Browser,
+    page::{embedded, number, opened, reported, simulate, steps},
+};
+use program::ADIS16405;
 use serde_json::Value;
 use std::fs;
 use tempfile::TempDir;

@@ -1,9 +1,11 @@
 //! The figures of a page of `report` answer: by mouse, fingers and keys they tell values, zoom and move, and the address
 //! and a table keep what is seen.
 
-use crate::browser::Browser;
-use crate::page::{embedded, number, opened, reported};
-use host_tests::program::ADIS16405;
+use crate::{
+    browser::Browser,
+    page::{embedded, number, opened, reported},
+};
+use program::ADIS16405;
 use serde_json::Value;
 use std::{
     fs, thread,

@@ -1,11 +1,11 @@
 //! The JSON schemas of the manual: real outputs are valid, and every property of them is described.
 
-use host_tests::program::{ADIS16405, output, run};
+use program::{ADIS16405, output, run};
 use serde_json::Value;
 use std::{fs, path::Path};
 use tempfile::TempDir;
 
-const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/doc/schema");
+const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../doc/schema");
 
 fn schema(name: &str) -> Value {
     let text = fs::read(format!("{FOLDER}/{name}.schema.json")).unwrap();
@@ -203,7 +203,7 @@ fn outputs_of_fit_and_diagnose_are_as_their_schemas_describe() {
 
 #[test]
 fn outputs_of_lot_are_as_its_schema_describes() {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/data/lot");
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../data/lot");
     let validator = Validator::of("lot", true);
     let lot = [
         "lot",

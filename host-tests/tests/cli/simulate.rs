@@ -2,9 +2,9 @@
 //! gives the same record.
 
 use allanite::Model;
-use host_tests::{
-    simulate::{Coefficients, Preset, Random, Simulator, band_limited_flicker},
-    study::{self, RATE_HZ},
+use allanite_host::simulate::{
+    Coefficients, Preset, Random, Simulator, band_limited_flicker,
+    record::{self, RATE_HZ},
 };
 use rand::SeedableRng as _;
 use rayon::prelude::*;
@@ -45,7 +45,7 @@ fn averages(coefficients: Coefficients, records: u64) -> Vec<Average> {
     let curves: Vec<Vec<(u32, f64)>> = (0..records)
         .into_par_iter()
         .map(|seed| {
-            let curve = study::curve(coefficients, SAMPLES, seed);
+            let curve = record::curve(coefficients, SAMPLES, seed);
             let relative = curve.points().iter().map(|point| {
                 let variance = model.variance(&squares, point.m, curve.interval_s());
                 (point.m, point.variance / variance)

@@ -1,7 +1,7 @@
 //! Files that change while they are read, names that are not what they look like, and outputs that others protected.
 
 use super::bad_input::good_text;
-use host_tests::program::{self, output, refusal};
+use program::{output, refusal};
 use std::{
     fs::{self, OpenOptions},
     io::Write as _,
@@ -226,7 +226,7 @@ fn a_log_that_grows_is_read_to_a_line_that_it_had_at_first() {
     let bytes: usize = bytes.parse().unwrap();
     let text = fs::read(&file).unwrap();
     assert!(bytes as u64 >= length && bytes < text.len() && text[bytes - 1] == b'\n');
-    let curve = host_tests::curve_file::CurveFile::read(&folder.path().join("m.json")).unwrap();
+    let curve = allanite_host::curve_file::CurveFile::read(&folder.path().join("m.json")).unwrap();
     let lines = text[..bytes].iter().filter(|&&byte| byte == b'\n').count();
     assert_eq!(curve.axes[0].samples, lines as u64 - 2);
 }

@@ -1,9 +1,11 @@
 //! Every command says the same of a record: a gyro beside a fan, whose bias follows the temperature.
 
-use crate::browser::Browser;
-use crate::page::{embedded, number};
-use crate::whole_page::{explored, settle};
-use host_tests::program::{ADIS16405, json, output, refusal};
+use crate::{
+    browser::Browser,
+    page::{embedded, number},
+    whole_page::{explored, settle},
+};
+use program::{ADIS16405, json, output, refusal};
 use serde_json::Value;
 use std::{fs, path::Path};
 use tempfile::TempDir;

@@ -1,12 +1,9 @@
 //! Tests `watch`: whatever ends a live record, the curve contains what was received.
 
 use allanite::{Accumulator, course::Course};
-use host_tests::program::{command, piped, refusal, signal};
-use host_tests::{
-    curve_file::CurveFile,
-    log::{Axis, Evidence, OCTAVES, SpectrumSums},
-    unit::Unit,
-};
+use allanite_host::curve_file::CurveFile;
+use allanite_log::{Axis, Evidence, OCTAVES, SpectrumSums, unit::Unit};
+use program::{command, piped, refusal, signal};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use serialport::{SerialPort, TTYPort};
@@ -136,7 +133,7 @@ fn expected(sent: &[Sent], samples: u64, gaps: u64) -> CurveFile {
                     ..Evidence::default()
                 }),
             };
-            host_tests::curve_file::AxisCurve::of(&axis, 100.0, Unit::DegreesPerSecond).unwrap()
+            allanite_host::curve_file::AxisCurve::of(&axis, 100.0, Unit::DegreesPerSecond).unwrap()
         });
     CurveFile::new(axes.collect())
 }

@@ -1,7 +1,6 @@
 //! Whatever ends `watch`, and at whatever moment, its record holds what was received more than a second before.
 
 use super::watch::{Sent, check_prefix, lines};
-use host_tests::program;
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use serialport::{SerialPort, TTYPort};
@@ -253,10 +252,13 @@ fn every_end_saves_the_record() {
     end_many(ENDS.len() as u64);
 }
 
-#[test]
-#[ignore = "it takes minutes"]
-fn a_record_is_saved_whatever_ends_it_at_200_moments() {
-    end_many(200);
+mod thorough {
+    use super::*;
+
+    #[test]
+    fn a_record_is_saved_whatever_ends_it_at_200_moments() {
+        end_many(200);
+    }
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! What a drawing of `plot` has where.
 
-use host_tests::program::output;
+use program::output;
 use roxmltree::{Document, Node};
 use serde_json::Value;
 use std::{fs, path::Path};

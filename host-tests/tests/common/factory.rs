@@ -8,12 +8,10 @@ use allanite::{
     effect::CATALOGUE,
     storage::{AxisCertificate, Certificate, Conditions, RateUnit},
 };
-use host_tests::{
-    demonstration::{
-        AMPLITUDES,
-        simulated::{Disturbance, SimulatedGyro},
-    },
-    diagnosis::diagnose,
+use allanite_host::diagnosis::diagnose;
+use demonstration::{
+    AMPLITUDES,
+    simulated::{Disturbance, SimulatedGyro},
 };
 
 pub(crate) const SAMPLES: usize = 1 << 16;

@@ -1,7 +1,7 @@
 //! Pages of `report` for tests.
 
 use crate::browser::Browser;
-use host_tests::program::{json, output};
+use program::{json, output};
 use serde_json::Value;
 use std::path::Path;
 

@@ -1,7 +1,7 @@
 //! The page that carries the program: empty, and with the records of `explore`.
 
 use crate::browser::Browser;
-use host_tests::program::output;
+use program::output;
 use serde_json::json;
 use std::{
     path::{Path, PathBuf},

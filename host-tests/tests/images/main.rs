@@ -1,6 +1,7 @@
-//! The images on every core, in QEMU, the boards to copy, and the library for C.
+//! The images in QEMU, the boards to copy, and the library for C.
 
-mod boards;
 mod c_interface;
-mod every_core;
+mod check;
 mod product;
+mod thorough;
+mod three_cores;

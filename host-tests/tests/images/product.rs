@@ -1,10 +1,9 @@
 //! Whole products that survive power cuts.
 
-use host_tests::demonstration::{
-    appliance::{BUFFER, CUTS, Cut, EVERY, Gyro, SAMPLES, replay},
+use demonstration::{
+    appliance::{BUFFER, Cut, EVERY, Gyro, SAMPLES, replay},
     simulated::Random,
 };
-use rayon::prelude::*;
 use xtask::firmware::{
     Image, Precision,
     agreement::{first_difference, told_here},
@@ -130,16 +129,16 @@ fn every_start_restores_the_newest_complete_snapshot_and_accounts_for_every_samp
 }
 
 /// What an image logged, with a part for each start.
-struct There {
-    cuts: Vec<Cut>,
+pub(crate) struct There {
+    pub(crate) cuts: Vec<Cut>,
     /// The lines that tell what had happened before each cut, and at the end.
     counts: Vec<String>,
     /// The lines from each start to its cut.
-    lives: Vec<Vec<String>>,
+    pub(crate) lives: Vec<Vec<String>>,
     longest: String,
 }
 
-fn there(image: &str, arguments: &[&str]) -> There {
+pub(crate) fn there(image: &str, arguments: &[&str]) -> There {
     let run = Image::build(image).and_then(|image| run_with(&image, arguments));
     let run = run.unwrap_or_else(|error| panic!("{image} {arguments:?}: {error:#}"));
     assert!(run.status.success(), "{image}: {:?}", run.lines);
@@ -171,7 +170,7 @@ fn there(image: &str, arguments: &[&str]) -> There {
 
 /// Checks that a product lost nothing, that a host which is cut at the same moments prints the same lines, and that
 /// every interrupted report is the beginning of the whole one. Returns the last start.
-fn check(image: &str, seed: u64, there: &There) {
+pub(crate) fn check(image: &str, seed: u64, there: &There) {
     let case = format!("{image}, seed {seed}");
     println!("{case}\n{}\n{}", there.counts.join("\n"), there.longest);
     let last = there.lives.last().expect("a start");
@@ -202,33 +201,4 @@ fn check(image: &str, seed: u64, there: &There) {
     assert!(of(&lines, "verdict ").len() == 1 && of(&lines, "certificate ").len() > 3);
     let longest = number(&there.longest, "longest");
     assert!(longest < number(&there.longest, "of") * 3 / 4, "{case}");
-}
-
-/// The images, each with a seed of its power cuts, and another one for the run with the watchdog's reset.
-const IMAGES: [(&str, [u64; 2]); 3] = [
-    ("appliance_loop", [1, 2]),
-    ("appliance_rtic", [3, 4]),
-    ("appliance_embassy", [5, 6]),
-];
-
-#[test]
-fn images_lose_nothing_to_ten_power_cuts_and_agree_with_the_host_to_the_bit() {
-    IMAGES.par_iter().for_each(|&(image, [seed, _])| {
-        let there = there(image, &[&seed.to_string()]);
-        assert_eq!(there.cuts.len(), CUTS, "{image}");
-        check(image, seed, &there);
-        // The last cut interrupts the report.
-        assert!(there.cuts[CUTS - 1].made > SAMPLES, "{image}");
-        assert!(there.lives[CUTS - 1].len() > 1, "{image}");
-    });
-}
-
-#[test]
-fn watchdog_resets_a_product_that_diagnoses_in_one_piece() {
-    IMAGES.par_iter().for_each(|&(image, [_, seed])| {
-        let there = there(image, &[&seed.to_string(), "true"]);
-        // The watchdog resets the board once, which is one cut more.
-        assert_eq!(there.cuts.len(), CUTS + 1, "{image}");
-        check(image, seed, &there);
-    });
 }

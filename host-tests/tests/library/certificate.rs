@@ -1,9 +1,10 @@
 //! Factory certificates keep what a fit and a diagnosis reported, and are refused if anything has
 //! changed.
 
-use crate::factory;
-use crate::factory::{SINUSOID, axis, encoded, followed, record};
-use crate::sealed::sealed;
+use crate::{
+    factory::{self, SINUSOID, axis, encoded, followed, record},
+    sealed::sealed,
+};
 use allanite::{
     Curve, Model,
     course::What,

@@ -1,18 +1,11 @@
 //! What the course of a record tells, on simulated records, and what a step and a warm-up add to a curve.
-//!
-//! The shares are guards: they repeat `cargo xtask study course` with fewer records.
 
 use allanite::{
     Accumulator, Model, Scale,
     course::{Course, What, allan_variance_of_step, allan_variance_of_warm_up, analyse, events},
     fit::{Options, fit},
 };
-use host_tests::{
-    simulate::{Coefficients, Preset, Simulator},
-    study::course::{CASES, Case, Tally, study},
-};
-
-const RECORDS: u64 = 12;
+use allanite_host::simulate::{Coefficients, Preset, Simulator};
 
 /// The octave variances of a record that holds nothing but this function of the sample, in counts².
 fn measured(samples: u32, rate: impl Fn(u32) -> f64) -> Vec<(u32, f64)> {
@@ -57,36 +50,6 @@ fn the_allan_variance_of_a_warm_up_is_that_of_a_record_that_holds_nothing_else()
                 off <= 1e-6 * expected + 1e-9,
                 "m {m}: {variance}, {expected}"
             );
-        }
-    }
-}
-
-/// The tally of every case, of one preset.
-fn tallies(preset: Preset) -> Vec<(Case, Tally)> {
-    let tallies = study(preset, &CASES, 5000..5000 + RECORDS);
-    CASES.into_iter().zip(tallies).collect()
-}
-
-#[test]
-fn events_are_told_where_they_are_and_nowhere_else() {
-    for preset in Preset::TYPICAL {
-        for (case, tally) in tallies(preset) {
-            let context = format!("{preset:?}, {case:?}: {tally:?}");
-            let all = RECORDS as usize;
-            assert_eq!(tally.records, all);
-            assert!(tally.any_besides <= 1, "{context}");
-            let (told, on_time) = match case {
-                Case::Clean => (0, 0),
-                // A small change is told at another block in half of the records.
-                Case::Noise(factor) if factor < 1.1 => (all * 3 / 4, 0),
-                Case::WarmUp => (all - 1, all * 2 / 3),
-                _ => (all - 1, all - 2),
-            };
-            assert!(tally.told >= told, "{context}");
-            assert!(tally.on_time >= on_time, "{context}");
-            if !matches!(case, Case::Clean | Case::Bursts) {
-                assert!(tally.covered * 4 >= tally.told * 3, "{context}");
-            }
         }
     }
 }

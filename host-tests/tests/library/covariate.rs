@@ -7,10 +7,9 @@ use allanite::{
     effect::CATALOGUE,
     spectrum::{Spectrum, SpectrumAccumulator},
 };
-use host_tests::{
+use allanite_host::{
     diagnosis::diagnose,
     simulate::{Coefficients, Course, Simulator, Thermal},
-    study,
 };
 use proptest::prelude::*;
 use rayon::prelude::*;
@@ -351,13 +350,4 @@ fn an_exponential_warm_up_and_its_rate_are_not_claimed_together() {
     assert!(found.len() >= 198, "{}", found.len());
     let together = found.iter().filter(|one| one.beside.is_some()).count();
     assert!(together <= 1, "{together} of 200");
-}
-
-/// Strong noise of another kind is taken for the noise of the rate where it follows a temperature, until it is known.
-#[test]
-fn a_temperature_behind_strong_gauss_markov_noise_is_found_beside_it() {
-    for (_, course, kelvin, _) in study::thermal::CASES {
-        let both = study::thermal::with_gauss_markov(course, kelvin, 10);
-        assert!(both >= 0.9, "{course:?}: {both}");
-    }
 }

@@ -9,7 +9,7 @@ use allanite::{
         LSM6DSO, LSM6DSR, LSM6DSV16X, LSM9DS1, MPU_6050, MPU_6500,
     },
 };
-use host_tests::{
+use allanite_host::{
     diagnosis::diagnose,
     simulate::{Hidden, Preset, Simulator},
 };

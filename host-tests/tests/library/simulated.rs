@@ -1,7 +1,7 @@
 //! Compares the integer gyro with the Allan variance of each of its terms.
 
 use allanite::{Accumulator, Scale};
-use host_tests::demonstration::simulated::{Amplitudes, SimulatedGyro};
+use demonstration::simulated::{Amplitudes, SimulatedGyro};
 
 const SILENT: Amplitudes = Amplitudes {
     quantization: 0,

@@ -10,6 +10,9 @@ use std::{
 /// Options of other programs that pages name alone, such as those of cargo.
 const FOREIGN: [&str; 3] = ["--strip-components", "--check", "--root"];
 
+/// The mark of a task that passes its arguments on to another program.
+const PASSED_ON: &str = "*";
+
 /// What the program prints.
 fn printed(arguments: &[&str]) -> String {
     let run = Command::new(env!("CARGO_BIN_EXE_allanite"))
@@ -59,7 +62,13 @@ impl Known {
         let tasks = xtask::CommandLine::command();
         let tasks = tasks.get_subcommands().map(|task| {
             let options = task.get_arguments().filter_map(|option| option.get_long());
-            let options = options.map(|name| format!("--{name}")).collect();
+            let mut options: BTreeSet<String> = options.map(|name| format!("--{name}")).collect();
+            if task
+                .get_arguments()
+                .any(|argument| argument.is_trailing_var_arg_set())
+            {
+                options.insert(PASSED_ON.to_owned());
+            }
             (task.get_name().to_owned(), options)
         });
         Self {
@@ -92,7 +101,7 @@ impl Known {
         let given = words.filter(|word| word.starts_with("--"));
         let mut given = given.filter_map(|word| word.split('=').next());
         let wrong = given.find(|word| *word != "--" && !options.contains(*word))?;
-        let is_passed_on = ["python", "fleet"].contains(&name);
+        let is_passed_on = options.contains(PASSED_ON);
         (!is_passed_on && wrong != "--help").then(|| format!("`{name}` has no {wrong}"))
     }
 
@@ -226,7 +235,7 @@ fn options_that_pages_name_alone_exist() {
             let option = code.split([' ', '=']).next().expect("a part");
             let is_known = known.has(option) || studies.options.contains(option);
             named += 1;
-            if !is_known && !FOREIGN.contains(&option) && !is_apart {
+            if option != "--" && !is_known && !FOREIGN.contains(&option) && !is_apart {
                 missing.push(format!("{}: {option}", page.path));
             }
         }
@@ -284,7 +293,8 @@ fn tests_that_pages_name_exist() {
             let words: Vec<&str> = rest.split_whitespace().collect();
             for (at, word) in words.iter().enumerate() {
                 let before = at.checked_sub(1).map_or("", |before| words[before]);
-                let is_value = ["-p", "--package", "--features"].contains(&before);
+                let is_value =
+                    ["-p", "--package", "--features", "--manifest-path"].contains(&before);
                 let is_there = match before {
                     "--test" => is_test_program(word),
                     _ if is_value || word.starts_with('-') => continue,

@@ -3,7 +3,7 @@
 use std::{fs, path::Path};
 
 /// The root of the repository.
-pub(crate) const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
+pub(crate) const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
 
 /// The file whose documentation is the page of the crate.
 pub(crate) const CRATE_PAGE: &str = "src/lib.rs";

@@ -10,18 +10,28 @@
 
 mod cycle;
 mod import;
+mod manifest;
+mod promises;
+mod script;
 mod seam;
 mod source;
 
 use source::Crate;
-use std::path::Path;
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    fs,
+    path::Path,
+};
 
-const HOST: &str = env!("CARGO_MANIFEST_DIR");
+const HOST: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
 
 /// Describes each group of files that import each other on a line.
 fn cycles(of: &Crate) -> Vec<String> {
-    let graph = import::graph(of);
-    let cycles = cycle::shortest(&graph).into_iter();
+    cycles_in(&import::graph(of))
+}
+
+fn cycles_in(graph: &import::Graph) -> Vec<String> {
+    let cycles = cycle::shortest(graph).into_iter();
     cycles.map(|files| files.join(" → ")).collect()
 }
 
@@ -47,8 +57,168 @@ fn assert_no_cycles(root: &Path, files: usize) {
 
 #[test]
 fn the_host_tools_have_no_import_cycles() {
-    assert_no_cycles(&Path::new(HOST).join("src"), 100);
+    for (package, files) in [
+        ("log", 80),
+        ("host", 30),
+        ("plot", 15),
+        ("cli", 100),
+        ("studies", 40),
+    ] {
+        assert_no_cycles(&Path::new(HOST).join(package).join("src"), files);
+    }
     assert_no_cycles(&Path::new(HOST).join("xtask/src"), 14);
+    assert_no_cycles(&Path::new(HOST).join("fleet/src"), 9);
+}
+
+#[test]
+fn the_files_of_python_do_not_import_each_other() {
+    let files = script::files(
+        &Path::new(HOST).join("../src/python/python/allanite"),
+        ".py",
+    );
+    let graph = script::python(&files, "allanite");
+    let imports: usize = graph.values().map(BTreeSet::len).sum();
+    assert!(
+        graph.len() >= 18 && imports >= 40,
+        "{} files, {imports} imports",
+        graph.len()
+    );
+    assert_eq!(cycles_in(&graph), [""; 0]);
+}
+
+#[test]
+fn the_scripts_of_pages_do_not_import_each_other_and_never_the_program() {
+    for (folder, least) in [("page", 8), ("cli/src/report", 10)] {
+        let files = script::files(&Path::new(HOST).join(folder), ".js");
+        assert!(files.len() >= least, "{} files in {folder}", files.len());
+        assert_eq!(cycles_in(&script::javascript(&files)), [""; 0]);
+        for (name, text) in files {
+            assert!(
+                !text.contains("cli/src"),
+                "{folder}/{name} names the program"
+            );
+        }
+    }
+}
+
+#[test]
+fn circles_of_python_and_of_javascript_are_found() {
+    let files = |all: &[(&str, &str)]| {
+        let owned = all
+            .iter()
+            .map(|&(name, text)| (name.to_owned(), text.to_owned()));
+        owned.collect::<script::Files>()
+    };
+    let python = files(&[
+        ("__init__.py", "from . import egg\nfrom .hen import Hen"),
+        (
+            "egg.py",
+            "import os\nif TYPE_CHECKING:\n    from .hen import (\n        Hen,\n    )",
+        ),
+        ("hen.py", "from . import (\n    nest as built,\n)"),
+        ("nest.py", "def lay():\n    import allanite.egg"),
+    ]);
+    let found = cycles_in(&script::python(&python, "allanite"));
+    assert_eq!(found, ["egg.py → hen.py → nest.py → egg.py"]);
+    let scripts = files(&[
+        ("a.js", "import { b } from \"./deep/b.js\";"),
+        ("deep/b.js", "const a = await import('../a.js');"),
+        ("c.js", "import \"./a.js\";"),
+    ]);
+    let found = cycles_in(&script::javascript(&scripts));
+    assert_eq!(found, ["a.js → deep/b.js → a.js"]);
+}
+
+/// Every package, and the folder of its manifest below `host-tests`.
+const PACKAGES: [(&str, &str); 13] = [
+    ("allanite", ".."),
+    ("allanite-c", "../src/c"),
+    ("allanite-log", "log"),
+    ("allanite-plot", "plot"),
+    ("allanite-host", "host"),
+    ("allanite-cli", "cli"),
+    ("allanite-python", "../src/python"),
+    ("allanite-fleet", "fleet"),
+    ("allanite-studies", "studies"),
+    ("fuzz", "fuzz"),
+    ("images", "../src/bin"),
+    ("program", "tests/program"),
+    ("xtask", "xtask"),
+];
+
+/// What may not be built from what. A program or a package that others install knows no tools of the project.
+const LAWS: [manifest::Law<'_>; 4] = [
+    (
+        &["allanite"],
+        &[
+            "allanite-log",
+            "allanite-plot",
+            "allanite-host",
+            "allanite-cli",
+        ],
+    ),
+    (
+        &["allanite-log", "allanite-plot"],
+        &["allanite-host", "allanite-cli"],
+    ),
+    (&["allanite-host"], &["allanite-cli"]),
+    (
+        &[
+            "allanite",
+            "allanite-c",
+            "allanite-log",
+            "allanite-plot",
+            "allanite-host",
+            "allanite-cli",
+            "allanite-python",
+            "allanite-fleet",
+        ],
+        &["allanite-studies", "fuzz", "program", "xtask"],
+    ),
+];
+
+#[test]
+fn packages_are_built_from_those_below_them_alone() {
+    let mut packages = BTreeMap::new();
+    for (name, folder) in PACKAGES {
+        let path = Path::new(HOST).join(folder).join("Cargo.toml");
+        let text =
+            fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+        assert!(
+            text.contains(&format!("name = \"{name}\"")),
+            "{name} is not in {folder}"
+        );
+        packages.insert(name, manifest::dependencies(&text));
+    }
+    assert!(packages["allanite-cli"].contains("allanite-host"));
+    assert_eq!(manifest::breaches(&packages, &LAWS), [""; 0]);
+}
+
+#[test]
+fn a_package_that_is_built_from_one_above_it_is_found() {
+    let manifests = [
+        (
+            "allanite-log",
+            "[dependencies]\nserde = \"1\"\n[dev-dependencies]\nxtask = { path = \"../xtask\" }",
+        ),
+        (
+            "allanite-host",
+            "[dependencies]\nallanite-log.workspace = true\n[target.'cfg(unix)'.dependencies]\nshown = { package = \"allanite-cli\" }",
+        ),
+        (
+            "allanite-cli",
+            "[dependencies.xtask]\npath = \"../xtask\"\noptional = true",
+        ),
+        ("xtask", ""),
+    ];
+    let packages = manifests.map(|(name, text)| (name, manifest::dependencies(text)));
+    let found = manifest::breaches(&BTreeMap::from(packages), &LAWS);
+    let expected = [
+        "allanite-host is built from allanite-cli: allanite-host → allanite-cli",
+        "allanite-host is built from xtask: allanite-host → allanite-cli → xtask",
+        "allanite-cli is built from xtask: allanite-cli → xtask",
+    ];
+    assert_eq!(found, expected);
 }
 
 #[test]

@@ -1,12 +1,10 @@
 //! The bound that the study of efficiency compares errors with, and a short run of it. The figures of the manual come
 //! from `cargo xtask study efficiency`.
 
-use host_tests::{
-    simulate::{Coefficients, Hidden, Preset, Simulator},
-    study::{
-        RATE_HZ, efficiency,
-        whittle::{bounds, densities},
-    },
+use allanite_host::simulate::{Coefficients, Hidden, Preset, Simulator};
+use allanite_studies::{
+    RATE_HZ, efficiency,
+    whittle::{bounds, densities},
 };
 use rustfft::{FftPlanner, num_complex::Complex};
 use std::f64::consts::{PI, TAU};

@@ -1,12 +1,10 @@
 //! The deviations that the study of peers compares with, against their definitions. The study itself needs Python and
 //! packages of others: `cargo xtask study peers`.
 
-use host_tests::{
-    simulate::{Preset, Simulator},
-    study::peers::{
-        agreement::{quarter, separate},
-        bootstrap::{bootstrap, mean},
-    },
+use allanite_host::simulate::{Preset, Simulator};
+use allanite_studies::peers::{
+    agreement::{quarter, separate},
+    bootstrap::{bootstrap, mean},
 };
 
 /// Counts of a gyro; their number is a prime.

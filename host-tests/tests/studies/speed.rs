@@ -1,7 +1,7 @@
 //! A short run of the study of speed: every way through the same samples ends at the same variances. Times are for the
 //! manual.
 
-use host_tests::study::speed::study;
+use allanite_studies::speed::study;
 
 #[test]
 fn every_type_of_element_gives_the_same_variances() {

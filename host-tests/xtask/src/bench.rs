@@ -214,7 +214,13 @@ fn shown_number(value: &Value) -> String {
 /// The figures that `host-tests/benches/accumulator.rs` prints.
 fn host() -> Result<Map<String, Value>> {
     let mut command = cargo();
-    command.args(["bench", "--package", "host-tests", "--bench", "accumulator"]);
+    command.args([
+        "bench",
+        "--package",
+        "allanite-host",
+        "--bench",
+        "accumulator",
+    ]);
     let _heartbeat = Heartbeat::new("the bench on this host".into());
     let output = command
         .stderr(std::process::Stdio::inherit())

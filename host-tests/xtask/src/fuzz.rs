@@ -80,7 +80,7 @@ pub(crate) fn fuzz(target: &str, seconds: u64, seed: u32) -> Result<()> {
 }
 
 /// The targets, which are the files of a folder.
-fn targets(folder: &Path) -> Result<Vec<String>> {
+pub(crate) fn targets(folder: &Path) -> Result<Vec<String>> {
     let mut names = Vec::new();
     for entry in fs::read_dir(folder.join("targets")).context("reading host-tests/fuzz/targets")? {
         let path = entry?.path();

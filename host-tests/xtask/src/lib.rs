@@ -17,14 +17,16 @@ mod results;
 mod setup;
 mod soak;
 mod step;
+mod study;
 mod supply_chain;
 mod test;
+pub mod watch;
 
 pub use setup::CHROMIUM;
 
 use anyhow::Result;
 use clap::{Parser, Subcommand};
-use firmware::{c_library::Contents, cargo};
+use firmware::c_library::Contents;
 use std::path::PathBuf;
 
 /// Tasks of the project.
@@ -39,12 +41,26 @@ pub struct CommandLine {
 enum Task {
     /// Install what this machine lacks to build, run and test everything.
     Setup,
-    /// Set up, then check and test everything.
-    Test,
+    /// Set up, then check and test what a change can break, in a quarter of an hour.
+    Test {
+        /// Test everything that the project promises, which takes an hour: every core in both precisions, budgets, the package, the
+        /// oldest compiler, injected faults, hostile inputs, fuzzing, Miri, studies and fleets.
+        #[arg(long)]
+        all: bool,
+    },
     /// Run a study behind the figures of the pages: `cargo xtask study help` lists them.
     Study {
         /// The study and its options; `--help` lists them.
         #[arg(trailing_var_arg = true, allow_hyphen_values = true, required = true)]
+        arguments: Vec<String>,
+    },
+    /// Watch a gyro that an image simulates in QEMU, with `allanite watch`.
+    Watch {
+        /// The program `allanite` to watch with; without it, it is built.
+        #[arg(long, value_name = "PROGRAM")]
+        program: Option<PathBuf>,
+        /// Arguments for `watch`, such as `--rate 100 --scale 0.00763`.
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         arguments: Vec<String>,
     },
     /// Accumulate samples with gaps, snapshots, power cuts and merges at random, and compare every sum with its
@@ -179,14 +195,9 @@ impl CommandLine {
     pub fn run(self) -> Result<()> {
         match self.task {
             Task::Setup => setup::run(),
-            Task::Test => test::run(),
-            Task::Study { arguments } => {
-                let mut study = cargo();
-                study.args(["run", "--release", "--package", "host-tests"]);
-                study.args(["--no-default-features", "--features", "study"]);
-                study.args(["--bin", "study", "--"]).args(arguments);
-                step::step("the study", &mut study)
-            }
+            Task::Test { all } => test::run(all),
+            Task::Study { arguments } => study::run(&arguments),
+            Task::Watch { program, arguments } => watch::run_watch(program.as_deref(), &arguments),
             Task::Soak {
                 samples,
                 seed,

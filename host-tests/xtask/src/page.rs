@@ -14,21 +14,25 @@ use std::{fs, io::Write as _, num::NonZeroU64, path::Path, process::Command};
 const TARGET: &str = "wasm32-wasip1";
 
 /// The styles: those of a report, and what the page adds to them.
-const STYLES: [&str; 3] = ["src/report/page.css", "page/explore.css", "page/drop.css"];
+const STYLES: [&str; 3] = [
+    "cli/src/report/page.css",
+    "page/explore.css",
+    "page/drop.css",
+];
 
 /// The scripts: the first ones are those of a report and draw figures; then the program, the records and their effects, and
 /// what is dropped.
 const SCRIPTS: [&str; 18] = [
-    "src/report/common.js",
-    "src/report/ticks.js",
-    "src/report/sheet.js",
-    "src/report/gloss.js",
-    "src/report/figure.js",
-    "src/report/legend.js",
-    "src/report/bars.js",
-    "src/report/plot.js",
-    "src/report/table.js",
-    "src/report/address.js",
+    "cli/src/report/common.js",
+    "cli/src/report/ticks.js",
+    "cli/src/report/sheet.js",
+    "cli/src/report/gloss.js",
+    "cli/src/report/figure.js",
+    "cli/src/report/legend.js",
+    "cli/src/report/bars.js",
+    "cli/src/report/plot.js",
+    "cli/src/report/table.js",
+    "cli/src/report/address.js",
     "page/program.js",
     "page/explore/state.js",
     "page/explore/records.js",
@@ -82,7 +86,7 @@ pub(crate) fn build(root: &Path, built: &Path, output: &Path) -> Result<()> {
         cargo()
             .current_dir(root)
             .args(["build", "--profile", "page", "--target", TARGET])
-            .args(["--package", "host-tests", "--no-default-features"])
+            .args(["--package", "allanite-cli", "--no-default-features"])
             .args(["--bin", "allanite", "--target-dir"])
             .arg(built)
             .env("CARGO_ENCODED_RUSTFLAGS", flags.join("\x1f")),

@@ -27,7 +27,7 @@ const PARTS: [&str; 5] = [
     "allanite-python",
     "--no-default-features",
     "--features",
-    "host-tests/bags,host-tests/tables",
+    "allanite-cli/bags,allanite-cli/tables",
 ];
 
 /// Builds the wheel, installs it, and runs its tests. `arguments` go to pytest.
@@ -79,7 +79,7 @@ pub(crate) fn run(arguments: &[String]) -> Result<()> {
     step(
         "Python: the wheel",
         program("maturin")
-            .args(["build", "--release", "--locked", "--manifest-path"])
+            .args(["build", "--locked", "--manifest-path"])
             .arg(workspace().join("src/python/Cargo.toml"))
             .arg("--out")
             .arg(&wheels)
@@ -88,7 +88,7 @@ pub(crate) fn run(arguments: &[String]) -> Result<()> {
     step(
         "Python: the program to compare with",
         cargo()
-            .args(["build", "--release", "--package", "host-tests"])
+            .args(["build", "--package", "allanite-cli"])
             .args(["--bin", "allanite"])
             .args(PARTS),
     )?;
@@ -117,7 +117,7 @@ pub(crate) fn run(arguments: &[String]) -> Result<()> {
             .args(["-m", "pytest", "--quiet"])
             .args(arguments)
             .current_dir(workspace().join("src/python"))
-            .env("ALLANITE", target.join("release/allanite")),
+            .env("ALLANITE", target.join("debug/allanite")),
     )
 }
 

@@ -53,7 +53,7 @@ pub(crate) fn run_all(folder: &Path, against: Option<&Path>, more: &[PathBuf]) -
         "build",
         "--release",
         "--package",
-        "host-tests",
+        "allanite-cli",
         "--bin",
         "allanite",
     ]))?;

@@ -16,12 +16,13 @@ const DEBIAN_COMPILER: [&str; 3] = ["rustc-web", "rust-web-src", "rust-web-clipp
 /// Debian's linker, for machines where rustup brings none.
 const DEBIAN_LINKER: &str = "lld";
 /// Programs that the tests run, and the Debian packages that contain them.
-const PROGRAMS: [(&str, &str); 5] = [
+const PROGRAMS: [(&str, &str); 6] = [
     ("qemu-system-arm", "qemu-system-arm"),
     ("qemu-system-riscv32", "qemu-system-misc"),
     (ARM_GCC, "gcc-arm-none-eabi"),
     ("cmake", "cmake"),
     (CHROMIUM, "chromium"),
+    ("strace", "strace"),
 ];
 /// The browser that the tests open pages with.
 pub const CHROMIUM: &str = "chromium";

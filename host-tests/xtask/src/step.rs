@@ -29,6 +29,17 @@ pub(crate) fn step(heading: &str, command: &mut Command) -> Result<()> {
 /// Runs a command and passes on what it prints. If it is silent for long, a line says that it still
 /// runs. If it fails, the error names the whole command.
 pub(crate) fn run(command: &mut Command) -> Result<()> {
+    run_into(command, &mut io::stdout())
+}
+
+/// Runs a command as [`run`] does, and returns what it prints on standard output.
+pub(crate) fn captured(command: &mut Command) -> Result<String> {
+    let mut printed = Vec::new();
+    run_into(command, &mut printed)?;
+    String::from_utf8(printed).context("a command prints what is no text")
+}
+
+fn run_into(command: &mut Command, to: &mut (impl Write + Send)) -> Result<()> {
     let shown = shown(command);
     if io::stderr().is_terminal() && std::env::var_os(COLOURS).is_none() {
         command.env(COLOURS, "always");
@@ -42,8 +53,8 @@ pub(crate) fn run(command: &mut Command) -> Result<()> {
     let begun = Instant::now();
     let (stdout, stderr) = (child.stdout.take(), child.stderr.take());
     let status = thread::scope(|scope| {
-        scope.spawn(|| pass_on(stdout, io::stdout(), &sign));
-        scope.spawn(|| pass_on(stderr, io::stderr(), &sign));
+        scope.spawn(|| pass_on(stdout, to, &sign));
+        scope.spawn(|| pass_on(stderr, &mut io::stderr(), &sign));
         loop {
             if let Some(status) = child.wait_timeout(MOMENT)? {
                 return Ok::<_, io::Error>(status);
@@ -65,7 +76,7 @@ pub(crate) fn run(command: &mut Command) -> Result<()> {
 }
 
 /// Copies the output until the command closes it, and notes the time of each sign of life.
-fn pass_on(from: Option<impl Read>, mut to: impl Write, sign: &Mutex<Instant>) {
+fn pass_on(from: Option<impl Read>, to: &mut impl Write, sign: &Mutex<Instant>) {
     let Some(mut from) = from else { return };
     let mut chunk = [0; 4096];
     while let Ok(length @ 1..) = from.read(&mut chunk) {

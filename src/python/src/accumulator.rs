@@ -1,7 +1,7 @@
 //! Samples that arrive while Python runs.
 
 use crate::{error::raised, record::Record};
-use host_tests::command::interface::Recording;
+use allanite_cli::command::interface::Recording;
 use numpy::PyReadonlyArray1;
 use pyo3::{exceptions::PyValueError, prelude::*};
 use std::sync::{Mutex, PoisonError};

@@ -1,6 +1,6 @@
 //! Arrays of NumPy as columns of the host library.
 
-use host_tests::log::{Column, Fill, Numbers};
+use allanite_log::{Column, Fill, Numbers};
 use numpy::{
     PyReadonlyArray1,
     ndarray::{ArrayView1, s},

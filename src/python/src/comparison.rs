@@ -1,7 +1,7 @@
 //! Models beside a record.
 
 use crate::error::raised;
-use host_tests::command::interface;
+use allanite_cli::command::interface;
 use pyo3::prelude::*;
 
 /// A model that was fitted to an axis.

@@ -6,7 +6,7 @@ use crate::{
     own::{self, OwnEffect},
     watched::left,
 };
-use host_tests::command::interface;
+use allanite_cli::command::interface;
 use pyo3::prelude::*;
 use std::sync::Arc;
 

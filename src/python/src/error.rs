@@ -1,6 +1,6 @@
 //! Failures as exceptions.
 
-use host_tests::failure::Failure;
+use allanite_log::failure::Failure;
 use pyo3::{PyErr, exceptions::PyRuntimeError, import_exception};
 
 import_exception!(allanite._error, AllaniteError);

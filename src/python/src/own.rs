@@ -1,7 +1,7 @@
 //! Effects that are written in Python.
 
 use crate::error::raised;
-use host_tests::command::interface;
+use allanite_cli::command::interface;
 use pyo3::prelude::*;
 use std::sync::{Arc, Mutex, PoisonError};
 

@@ -1,10 +1,8 @@
 //! Records that are read in pieces.
 
 use crate::{error::raised, record::Record};
-use host_tests::{
-    command::interface,
-    pieces::{Gathered, Pieces as State},
-};
+use allanite_cli::command::interface;
+use allanite_log::pieces::{Gathered, Pieces as State};
 use numpy::PyReadonlyArray1;
 use pyo3::{prelude::*, types::PyBytes};
 use std::sync::{Mutex, MutexGuard, PoisonError};

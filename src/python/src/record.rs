@@ -9,10 +9,8 @@ use crate::{
     table::Batches,
     watched::{left, watched},
 };
-use host_tests::{
-    command::interface,
-    log::{Arrays, Column},
-};
+use allanite_cli::command::interface;
+use allanite_log::{Arrays, Column};
 use pyo3::{prelude::*, types::PyBytes};
 use std::{
     path::{Path, PathBuf},

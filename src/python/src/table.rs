@@ -1,5 +1,6 @@
 //! Tables of Arrow as columns of the host library.
 
+use allanite_log::{Column, Fill, Numbers};
 use arrow::{
     array::{Array, ArrayRef, ArrowPrimitiveType, AsArray, PrimitiveArray, RecordBatch},
     datatypes::{
@@ -10,7 +11,6 @@ use arrow::{
     ffi_stream::RecordBatchStreamReader,
 };
 use arrow_pyarrow::FromPyArrow;
-use host_tests::log::{Column, Fill, Numbers};
 use pyo3::prelude::*;
 
 /// The record batches that an object exports through `__arrow_c_stream__`.

@@ -1,7 +1,7 @@
 //! Work without the interpreter's lock, which Ctrl-C ends.
 
 use crate::error::raised;
-use host_tests::failure::Failure;
+use allanite_log::failure::Failure;
 use indicatif::ProgressBar;
 use pyo3::{exceptions::PyRuntimeError, prelude::*};
 use std::{

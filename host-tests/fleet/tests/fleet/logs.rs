@@ -1,5 +1,6 @@
 //! Logs of some devices in Parquet, and the states that they have.
 
+use allanite_log::pieces::Pieces;
 use datafusion::{
     arrow::{
         array::{
@@ -11,7 +12,6 @@ use datafusion::{
     },
     parquet::{arrow::ArrowWriter, file::properties::WriterProperties},
 };
-use host_tests::pieces::Pieces;
 use rand::{RngExt as _, SeedableRng as _};
 pub(crate) use rand_xoshiro::Xoshiro256PlusPlus as Random;
 use std::{fs::File, path::Path, sync::Arc};

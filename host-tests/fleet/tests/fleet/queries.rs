@@ -1,7 +1,9 @@
 //! Queries in this process.
 
 use crate::logs::{Fleet, RATE_HZ, Row, SCALE, found, random, write, write_columns};
+use allanite_cli::command::interface::Record;
 use allanite_fleet::cluster::local;
+use allanite_log::pieces::Pieces;
 use datafusion::{
     arrow::{
         array::{Array, ArrayRef, AsArray, Int32Array, Int64Array, RecordBatch},
@@ -10,7 +12,6 @@ use datafusion::{
     error::DataFusionError,
     prelude::{ParquetReadOptions, SessionConfig, SessionContext},
 };
-use host_tests::{command::interface::Record, pieces::Pieces};
 use rand::RngExt as _;
 use std::{path::Path, sync::Arc};
 

@@ -4,7 +4,7 @@ use super::case::{Case, refused};
 use std::{fs, path::Path};
 
 pub(super) fn fixture(name: &str) -> Vec<u8> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/fixtures");
     fs::read(folder.join(name)).unwrap()
 }
 

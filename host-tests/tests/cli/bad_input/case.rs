@@ -1,6 +1,5 @@
 //! A bad input: files, a command, and what must come of it.
 
-use host_tests::program;
 use std::{
     fs,
     io::{Read, Write},

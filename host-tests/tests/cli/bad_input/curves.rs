@@ -1,7 +1,7 @@
 //! Bad curve files.
 
 use super::case::{Case, refused};
-use host_tests::program::ADIS16405;
+use program::ADIS16405;
 use serde_json::{Value, json};
 use std::fs;
 

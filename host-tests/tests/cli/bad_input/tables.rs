@@ -23,7 +23,7 @@ const FILES: [&str; 10] = [
 const COPIES: u64 = 16;
 
 pub(crate) fn cases() -> Vec<Case> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures/origins");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/fixtures/origins");
     let mut cases = vec![
         refused("a.bbl", "", "fit a.bbl", "no log with numbers"),
         refused("a.parquet", "PAR1", "fit a.parquet", "ends in the middle"),

@@ -126,7 +126,7 @@ pub(crate) fn cases() -> Vec<Case> {
     ];
     let case = |(bytes, expected)| refused("a.ulg", bytes, "fit a.ulg", expected);
     let mut cases: Vec<Case> = logs.into_iter().map(case).collect();
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/fixtures");
     let good = |name: &str| fs::read(folder.join(name)).unwrap();
     let (two, none) = (good("two-gyros.ulg"), good("no-gyro.ulg"));
     cases.push(refused("a.ulg", none, "fit a.ulg", "no topic of"));

@@ -1,7 +1,8 @@
 //! Bad input ends with one line, and no existing output is lost.
 
 use super::folder;
-use host_tests::{curve_file::VERSION, program::refusal};
+use allanite_host::curve_file::VERSION;
+use program::refusal;
 use std::fs;
 
 #[test]

@@ -1,7 +1,7 @@
 //! Fits logs and curves to coefficients on the command line.
 
 use super::{Document, fit, folder};
-use host_tests::program::{output, refusal};
+use program::{output, refusal};
 use std::{fs, path::Path};
 use tempfile::TempDir;
 
@@ -255,7 +255,7 @@ fn accelerometers_have_their_own_words_and_units() {
 #[test]
 fn logs_of_other_programs_are_fitted_without_an_option() {
     let folder = TempDir::new().unwrap();
-    let fixtures = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures");
+    let fixtures = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/fixtures");
     for name in ["euroc.csv", "imu-zstd.mcap", "ros1.mcap", "gyro.ulg"] {
         let path = fixtures.join(name);
         let path = path.to_str().unwrap();

@@ -7,7 +7,7 @@ mod fitting;
 mod outputs;
 mod simulating;
 
-use host_tests::program::output;
+use program::output;
 use serde::Deserialize;
 use std::path::Path;
 use tempfile::TempDir;

@@ -2,7 +2,7 @@
 //! nobody reads.
 
 use super::folder;
-use host_tests::program::{self, command, output, refusal};
+use program::{command, output, refusal};
 use std::{
     fs,
     os::unix::fs::{FileTypeExt, symlink},

@@ -1,6 +1,6 @@
 //! Simulates logs on the command line.
 
-use host_tests::program::{command, output, refusal};
+use program::{command, output, refusal};
 use std::{fs, path::Path, process::Stdio};
 use tempfile::TempDir;
 

@@ -1,7 +1,7 @@
 //! Reads logs that were cut off, or in which a byte was changed.
 
 use super::{GYRO, ROWS, assert_sums, counts, fixture, try_read};
-use host_tests::log::Options;
+use allanite_log::Options;
 use std::fs;
 use tempfile::TempDir;
 

@@ -3,8 +3,8 @@
 
 use super::{of, read_text};
 use crate::formats::try_read;
-use host_tests::{
-    log::Options,
+use allanite_log::{
+    Options,
     unit::{Sensor, Unit},
 };
 use std::fmt::Write as _;

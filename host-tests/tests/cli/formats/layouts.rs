@@ -2,10 +2,7 @@
 //! gyro's three axes in their unit, or nothing.
 
 use super::read_text;
-use host_tests::{
-    log::{Log, Options},
-    unit::Unit,
-};
+use allanite_log::{Log, Options, unit::Unit};
 use std::fmt::Write as _;
 
 const ROWS: usize = 60;
@@ -211,7 +208,7 @@ fn is_right(log: &Log, layout: &Layout) -> bool {
         ..Options::default()
     };
     let plain = read_text(&layout.plain, &options).unwrap();
-    let same = |(one, other): (&host_tests::log::Axis, &host_tests::log::Axis)| {
+    let same = |(one, other): (&allanite_log::Axis, &allanite_log::Axis)| {
         one.accumulator == other.accumulator
     };
     log.axes.len() == 3
@@ -300,7 +297,7 @@ fn where_two_readings_are_plausible_both_are_spelled_out() {
         "a.csv: foo_x to foo_z may be the axes of a gyro, and acc_x, acc_y, acc_z are those of an \
          accelerometer; choose with --sensor accel, or with --columns gx=2,gy=3,gz=4"
     );
-    let sensor = Some(host_tests::unit::Sensor::Accelerometer);
+    let sensor = Some(allanite_log::unit::Sensor::Accelerometer);
     let options = Options {
         sensor,
         ..Options::default()

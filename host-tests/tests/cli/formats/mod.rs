@@ -9,10 +9,7 @@ mod text;
 mod values;
 
 use allanite::Accumulator;
-use host_tests::{
-    log::{self, Log, OCTAVES, Options},
-    unit::Sensor,
-};
+use allanite_log::{self as log, Log, OCTAVES, Options, unit::Sensor};
 use indicatif::ProgressBar;
 use std::{
     fs,
@@ -28,7 +25,7 @@ const ACCELEROMETER: f64 = 1.0 / 256.0;
 
 fn fixture(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("tests/fixtures")
+        .join("../tests/fixtures")
         .join(name)
 }
 

@@ -1,10 +1,7 @@
 //! The table of files by their origin in the manual: each one is read as the table says, or refused with its message.
 
 use super::{GYRO, assert_sums, counts, try_read};
-use host_tests::{
-    log::{Log, Options},
-    unit::Unit,
-};
+use allanite_log::{Log, Options, unit::Unit};
 use std::{collections::BTreeSet, path::Path};
 
 const MANIFEST: &str = env!("CARGO_MANIFEST_DIR");
@@ -18,7 +15,7 @@ struct Origin {
 
 /// The rows of the table in the manual.
 fn table() -> Vec<Origin> {
-    let manual = std::fs::read_to_string(Path::new(MANIFEST).join("doc/logs.md")).unwrap();
+    let manual = std::fs::read_to_string(Path::new(MANIFEST).join("../doc/logs.md")).unwrap();
     let rows = manual
         .lines()
         .skip_while(|line| !line.starts_with("| written by | file |"));
@@ -85,7 +82,7 @@ fn every_kind_of_file_is_read_or_refused_as_the_manual_says() {
         let name = file.trim_end_matches('/');
         let inside = ["origins", ""].map(|folder| {
             Path::new(MANIFEST)
-                .join("tests/fixtures")
+                .join("../tests/fixtures")
                 .join(folder)
                 .join(name)
         });
@@ -139,7 +136,7 @@ fn every_kind_of_file_is_read_or_refused_as_the_manual_says() {
         .map(|row| row.file.trim_end_matches('/'))
         .collect();
     let folder = Path::new(MANIFEST)
-        .join("tests/fixtures/origins")
+        .join("../tests/fixtures/origins")
         .read_dir()
         .unwrap();
     for entry in folder {
@@ -153,7 +150,7 @@ fn every_kind_of_file_is_read_or_refused_as_the_manual_says() {
 fn units_by_convention_and_rates_of_preambles_are_said() {
     let said = |name: &str, option: &str| {
         let path = Path::new(MANIFEST)
-            .join("tests/fixtures/origins")
+            .join("../tests/fixtures/origins")
             .join(name);
         try_read(&path, &options(option)).unwrap().notes.join("\n")
     };

@@ -2,11 +2,8 @@
 
 use super::{counts, read_text};
 use allanite::Accumulator;
-use host_tests::{
-    curve_file::{AxisCurve, CurveFile},
-    log::{Log, OCTAVES, Options, TimeUnit},
-    unit::Unit,
-};
+use allanite_host::curve_file::{AxisCurve, CurveFile};
+use allanite_log::{Log, OCTAVES, Options, TimeUnit, unit::Unit};
 use rand::{RngExt, SeedableRng};
 use rand_distr::StandardNormal;
 use rand_xoshiro::Xoshiro256PlusPlus;

@@ -2,7 +2,7 @@
 
 use super::{counts, read_text};
 use allanite::Accumulator;
-use host_tests::log::{OCTAVES, Options};
+use allanite_log::{OCTAVES, Options};
 use std::fmt::Write as _;
 
 fn rate(rate_hz: f64) -> Options {

@@ -3,8 +3,8 @@
 use super::{
     ACCELEROMETER, GYRO, assert_sums, counts, fixture, of, read, read_text, topic, try_read,
 };
-use host_tests::{
-    log::Options,
+use allanite_log::{
+    Options,
     unit::{Sensor, Unit},
 };
 use std::fmt::Write as _;

@@ -1,7 +1,7 @@
 //! Bad logs are refused in one line.
 
 use super::{at_100_hz, columns, counts, gzip, header, npy, refusal, rows_of_text, try_read};
-use host_tests::log::{Options, npy_header::Kind};
+use allanite_log::{Options, npy_header::Kind};
 use std::fmt::Write as _;
 
 #[test]

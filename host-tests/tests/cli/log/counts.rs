@@ -4,11 +4,9 @@ use super::{
     accumulators, assert_axes, at_100_hz, columns, counts, gzip, header, npy, read, rows_of_text,
 };
 use allanite::Accumulator;
-use host_tests::{
-    log::{
-        OCTAVES, Options,
-        npy_header::{Header, Kind},
-    },
+use allanite_log::{
+    OCTAVES, Options,
+    npy_header::{Header, Kind},
     unit::Unit,
 };
 use std::fmt::Write as _;

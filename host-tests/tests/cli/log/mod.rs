@@ -4,14 +4,12 @@ mod bad_input;
 mod counts;
 
 use allanite::Accumulator;
-use flate2::{Compression, write::GzEncoder};
-use host_tests::{
-    log::{
-        self, ColumnChoice, Log, OCTAVES, Options,
-        npy_header::{Header, Kind},
-    },
+use allanite_log::{
+    self as log, ColumnChoice, Log, OCTAVES, Options,
+    npy_header::{Header, Kind},
     unit::Unit,
 };
+use flate2::{Compression, write::GzEncoder};
 use indicatif::ProgressBar;
 use std::{fmt::Write as _, fs, io::Write as _};
 use tempfile::TempDir;

@@ -6,7 +6,7 @@ use allanite::{
     effect::CATALOGUE,
     storage::{AxisCertificate, Certificate, Conditions, RateUnit},
 };
-use host_tests::{
+use allanite_host::{
     diagnosis::diagnose,
     simulate::{Coefficients, Preset, Random, Simulator},
 };

@@ -4,15 +4,15 @@ mod devices;
 mod outputs;
 
 use allanite::{diagnosis::Verdict, effect::IEEE_952, integrity::Reason, storage::CertifiedTerm};
+use allanite_host::{
+    lot::{Measurement, difference, threshold},
+    simulate::{Coefficients, Preset},
+};
 use devices::{
     BEFORE, DEVICES, Lot, certificate, encoded, has_become_noisy, has_begun_to_walk, has_line,
     is_noisy, is_unstable, lot, name, truth,
 };
-use host_tests::{
-    lot::{Measurement, difference, threshold},
-    program::{command, json, refusal},
-    simulate::{Coefficients, Preset},
-};
+use program::{command, json, refusal};
 use rayon::prelude::*;
 use serde_json::Value;
 use std::{collections::BTreeSet, fs};
@@ -377,7 +377,7 @@ fn devices_that_have_not_changed_seldom_drift() {
 #[test]
 #[ignore = "writes into the repository"]
 fn write_the_lot_of_the_manual() {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/data/lot");
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../data/lot");
     let write = |kind: &str, device: u64, now: bool| {
         let file = format!("{folder}/{kind}/{}.bin", name(device));
         fs::write(file, encoded(&measured(device, now))).unwrap();

@@ -6,8 +6,8 @@ use super::{
 };
 use allanite::{diagnosis::Verdict, integrity::Reason};
 use arrow::array::{Array, Float64Array, RecordBatch, StringArray};
-use host_tests::program::{json, output, refusal};
 use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
+use program::{json, output, refusal};
 use serde_json::Value;
 use std::{collections::BTreeMap, fs, fs::File, path::Path};
 

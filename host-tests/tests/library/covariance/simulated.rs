@@ -6,7 +6,7 @@ use allanite::{
     effect::{CATALOGUE, Distribution, Effect, MAX_PARAMETERS},
     fit::curve_covariance,
 };
-use host_tests::simulate::{Coefficients, Hidden, Simulator};
+use allanite_host::simulate::{Coefficients, Hidden, Simulator};
 use rayon::prelude::*;
 
 const OCTAVES: usize = 10;

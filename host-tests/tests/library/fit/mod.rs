@@ -8,9 +8,9 @@ use allanite::{
     Curve, Model,
     fit::{Fit, Method, Options, fit},
 };
-use host_tests::{simulate::Preset, study};
+use allanite_host::simulate::{Preset, record};
 
-const OCTAVES: usize = study::OCTAVES;
+const OCTAVES: usize = record::OCTAVES;
 
 const RATE_HZ: f64 = 100.0;
 
@@ -54,7 +54,7 @@ fn changed(curve: &Curve<OCTAVES>, factor: impl Fn(usize) -> f64) -> Curve<OCTAV
 
 /// The curve of a simulated record.
 fn noisy(samples: usize, seed: u64) -> Curve<OCTAVES> {
-    study::curve(Preset::Mems.coefficients(), samples, seed)
+    record::curve(Preset::Mems.coefficients(), samples, seed)
 }
 
 fn fitted(curve: &Curve<OCTAVES>, settings: Options) -> Fit {

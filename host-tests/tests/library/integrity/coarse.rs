@@ -2,7 +2,7 @@
 
 use super::{RATE_HZ, SAMPLES, counts_per_rate, integrity, mems, quantised};
 use allanite::integrity::{Integrity, Limits, Reason};
-use host_tests::simulate::{Coefficients, Preset, Random, Simulator};
+use allanite_host::simulate::{Coefficients, Preset, Random, Simulator};
 use rand::SeedableRng;
 use rand_distr::{Distribution, Normal};
 use rayon::prelude::*;

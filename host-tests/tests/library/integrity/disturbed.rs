@@ -7,7 +7,7 @@ use allanite::{
     Accumulator,
     integrity::{Integrity, Limits, Reason},
 };
-use host_tests::simulate::{Preset, Simulator};
+use allanite_host::simulate::{Preset, Simulator};
 
 fn is_moved(reason: Option<Reason>) -> bool {
     matches!(reason, Some(Reason::Moved { .. }))

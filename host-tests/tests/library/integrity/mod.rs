@@ -6,7 +6,7 @@ mod rest;
 mod state;
 
 use allanite::integrity::{Integrity, Tally};
-use host_tests::simulate::{Preset, Simulator};
+use allanite_host::simulate::{Preset, Simulator};
 use rayon::prelude::*;
 
 const RATE_HZ: f64 = 100.0;

@@ -3,7 +3,7 @@
 use super::{
     FINE, RATE_HZ, assert_unremarkable, assert_valid, counts_per_rate, integrity, quantised, rest,
 };
-use host_tests::simulate::{Coefficients, Hidden, Preset, Simulator};
+use allanite_host::simulate::{Coefficients, Hidden, Preset, Simulator};
 
 #[test]
 fn a_gyro_at_rest_is_valid_and_no_event_is_counted() {

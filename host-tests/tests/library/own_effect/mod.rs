@@ -9,7 +9,7 @@ use allanite::{
     effect::{CATALOGUE, Effect, Explain, FIRST_OWN_CODE, Flaw, SampledShape, check},
     storage::{AxisCertificate, Certificate, Conditions, EffectCode, RateUnit},
 };
-use host_tests::{
+use allanite_host::{
     diagnosis::diagnose,
     simulate::{Coefficients, Hidden, Simulator},
 };

@@ -5,7 +5,7 @@ use allanite::{
     effect::{Distribution, Effect, MAX_PARAMETERS},
     spectrum::{Bin, Spectrum, SpectrumAccumulator},
 };
-use host_tests::simulate::{Coefficients, Hidden, Simulator};
+use allanite_host::simulate::{Coefficients, Hidden, Simulator};
 
 /// Samples per second.
 pub(crate) const RATE_HZ: f64 = 100.0;

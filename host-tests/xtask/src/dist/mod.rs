@@ -25,7 +25,7 @@ use std::{
 
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 
-/// The parts of the program: all but the studies.
+/// The parts of the program.
 const FEATURES: &str = "bags,pictures,tables,watch";
 
 /// Who answers for the package, unless the variables DEBFULLNAME and DEBEMAIL say so. The address is left for the owner to give;
@@ -134,7 +134,7 @@ impl Build {
             ),
         }
         let program = Program {
-            package: "host-tests",
+            package: "allanite-cli",
             features: FEATURES,
             target: &self.target,
         };
@@ -225,7 +225,7 @@ impl Build {
             "--profile",
             "dist",
             "--package",
-            "host-tests",
+            "allanite-cli",
         ]);
         build.args(["--no-default-features", "--features"]);
         build.arg(format!("{FEATURES},manual"));

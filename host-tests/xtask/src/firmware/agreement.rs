@@ -1,9 +1,6 @@
 //! Checks that an image and this host compute the same bits.
 
-use super::{
-    Core, Heartbeat, Image, Precision, REMEDY, cargo, run_with,
-    toolchain::{exclusive, target_directory},
-};
+use super::{Core, Heartbeat, Image, Precision, REMEDY, cargo, run_with, toolchain::artefacts};
 use anyhow::{Context as _, Result, ensure};
 
 /// The first line in which the program `characterise` prints different things on a core and on this
@@ -52,14 +49,11 @@ pub fn told_here(precision: Precision, image: &str, arguments: &[&str]) -> Resul
         "{image} on this host, {} precision",
         precision.name()
     ));
-    // The program has the same path in both precisions.
-    let _lock = exclusive()?;
     let output = cargo()
         .args(["run", "--package", "images", "--bin", image])
         .args(precision.arguments())
-        // The cargo that runs this program may hold the lock of the usual target directory.
         .arg("--target-dir")
-        .arg(target_directory())
+        .arg(artefacts(precision))
         .arg("--")
         .args(arguments)
         .stderr(std::process::Stdio::inherit())

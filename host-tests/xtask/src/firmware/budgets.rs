@@ -3,7 +3,7 @@
 //! The file holds detailed figures of the Cortex-M4F and a few figures of every core, all of them built with rustup's
 //! toolchain. With Debian's, the images are built and run, and agree with the host to the bit, but cost other numbers.
 
-use super::{CORTEX_M4F, Core, Precision, measure, workspace};
+use super::{CORTEX_M4F, Core, Precision, image, measure, workspace};
 use anyhow::{Context as _, Result, ensure};
 use rayon::prelude::*;
 use serde_json::{Map, Value, json};
@@ -23,8 +23,12 @@ const UPDATE: &str =
 /// Fails if an image cannot be built or run.
 pub fn measured() -> Result<Value> {
     let cores: Vec<Core> = Core::all().collect();
-    // Images are built one at a time and run in parallel, because instructions are counted and not
-    // timed.
+    let large: Vec<Core> = cores.iter().copied().filter(|core| !core.small).collect();
+    let detailed = Precision::ALL.map(|precision| CORTEX_M4F.with(precision));
+    image::build_all(&image::ON_EVERY_CORE, &cores, "firmware")?;
+    image::build_all(&image::ON_LARGE_CORES, &large, "firmware")?;
+    image::build_all(&image::ON_THE_MEASURED_CORE, &detailed, "firmware")?;
+    // They run in parallel, because instructions are counted and not timed.
     let figures = cores.par_iter().map(measure::figures);
     let figures = figures.collect::<Result<Vec<_>>>()?;
     let mut measured = json!({});
@@ -85,6 +89,23 @@ pub fn check(measured: &Value, budgets: &Value) -> Result<()> {
     compare("", measured, budgets, &mut complaints);
     ensure!(complaints.is_empty(), "{}\n{UPDATE}", complaints.join("\n"));
     Ok(())
+}
+
+/// Measures a core and compares it with its budgets.
+///
+/// # Errors
+/// Fails if an image cannot be built or run, or if a figure exceeds its budget.
+pub fn check_core(core: &Core) -> Result<()> {
+    let measured = measure::entry(core, &measure::figures(core)?)?;
+    let committed = committed()?;
+    let is_it = |entry: &&Value| {
+        entry["core"] == measured["core"] && entry["precision"] == measured["precision"]
+    };
+    let budgets = committed["cores"]
+        .as_array()
+        .and_then(|cores| cores.iter().find(is_it));
+    let budgets = budgets.with_context(|| format!("{core} has no budgets: {UPDATE}"))?;
+    check(&measured, budgets)
 }
 
 /// Compares two values of the same shape. A number may exceed its budget by [`TOLERANCE`].

@@ -1,8 +1,8 @@
 //! Builds the static library for C and programs that are linked with it.
 
 use super::{
-    Core, Heartbeat, REMEDY, Toolchain, cargo,
-    toolchain::{exclusive, target_directory},
+    Core, Heartbeat, Precision, REMEDY, Toolchain, cargo,
+    toolchain::{artefacts, target_directory},
     workspace,
 };
 use crate::step::shown;
@@ -39,6 +39,14 @@ impl Contents {
     /// The features of the package, besides the default ones.
     fn features(self) -> Option<String> {
         (self.octaves != 20).then(|| format!("octaves-{}", self.octaves))
+    }
+
+    /// The folder for its artefacts. A library has the same name whatever it holds, so that only the usual one shares the images'.
+    fn artefacts(self) -> PathBuf {
+        match self.defines().join("-") {
+            usual if usual.is_empty() => artefacts(Precision::Single),
+            other => target_directory().join(other.to_lowercase()),
+        }
     }
 
     /// What C code has to define for it.
@@ -113,7 +121,8 @@ endif()
 /// # Errors
 /// Fails if the build fails.
 pub fn library(core: &Core, contents: Contents) -> Result<PathBuf> {
-    let mut command = Toolchain::find(core)?.cargo("rustc")?;
+    let folder = contents.artefacts();
+    let mut command = Toolchain::find(core)?.cargo_into("rustc", &folder)?;
     command.args(["--package", "allanite-c", "--lib", "--profile", "firmware"]);
     // As one of several kinds, a static library would not be optimised as a whole.
     command.args(["--crate-type", "staticlib"]);
@@ -123,10 +132,9 @@ pub fn library(core: &Core, contents: Contents) -> Result<PathBuf> {
     if contents.one_axis {
         command.arg("--no-default-features");
     }
-    let _lock = exclusive()?;
     let _heartbeat = Heartbeat::new(format!("the library for C for {}", core.name));
     succeed(&mut command)?;
-    let built = target_directory().join(core.target);
+    let built = folder.join(core.target);
     Ok(built.join("firmware/liballanite_c.a"))
 }
 
@@ -137,13 +145,11 @@ pub fn library(core: &Core, contents: Contents) -> Result<PathBuf> {
 pub fn host_library() -> Result<PathBuf> {
     let mut command = cargo();
     command
-        .args(["build", "--package", "allanite-c", "--lib", "--release"])
-        .arg("--target-dir")
-        .arg(target_directory());
-    let _lock = exclusive()?;
+        .args(["build", "--package", "allanite-c", "--lib", "--target-dir"])
+        .arg(artefacts(Precision::Single));
     let _heartbeat = Heartbeat::new("the library for C for this host".into());
     succeed(&mut command)?;
-    Ok(target_directory().join("release/liballanite_c.a"))
+    Ok(artefacts(Precision::Single).join("debug/liballanite_c.a"))
 }
 
 /// The lines that the example in Rust prints on this host, in single precision.
@@ -154,9 +160,8 @@ pub fn rust_example() -> Result<Vec<String>> {
     let mut command = cargo();
     command
         .args(["run", "--package", "allanite-c", "--example", "product"])
-        .args(["--release", "--target-dir"])
-        .arg(target_directory());
-    let _lock = exclusive()?;
+        .arg("--target-dir")
+        .arg(artefacts(Precision::Single));
     let _heartbeat = Heartbeat::new("the product in Rust on this host".into());
     lines(&mut command)
 }
@@ -171,10 +176,9 @@ pub fn replay(corpus: &Path) -> Result<Vec<String>> {
     command
         .args(["run", "--package", "allanite-c", "--example", "replay"])
         .arg("--target-dir")
-        .arg(target_directory())
+        .arg(artefacts(Precision::Single))
         .arg("--")
         .arg(corpus);
-    let _lock = exclusive()?;
     let _heartbeat = Heartbeat::new("calls of the interface for C".into());
     lines(&mut command)
 }

@@ -1,15 +1,9 @@
 //! Builds an image and examines it.
 
-use super::{
-    CORTEX_M4F, Core, Heartbeat, REMEDY, Toolchain,
-    toolchain::{exclusive, target_directory},
-};
+use super::{CORTEX_M4F, Core, Heartbeat, Precision, REMEDY, Toolchain, toolchain::artefacts};
 use anyhow::{Context as _, Result, bail, ensure};
 use object::{Object as _, ObjectSection as _, ObjectSymbol as _, SectionKind, SymbolKind};
-use std::{
-    io::Write as _,
-    path::{Path, PathBuf},
-};
+use std::path::{Path, PathBuf};
 
 /// Parts of the names of functions that a panic needs: the panic handler and the functions that
 /// call it.
@@ -26,6 +20,28 @@ const PANICS: [&str; 8] = [
 
 /// The images that need a feature of their package, with the feature.
 const FEATURES: [(&str, &str); 2] = [("appliance_rtic", "rtic"), ("appliance_embassy", "embassy")];
+
+/// The images whose cost is measured, or that are compared with this host, on every core.
+pub const ON_EVERY_CORE: [&str; 5] = [
+    "bench",
+    "characterise",
+    "footprint_fit",
+    "footprint_five_terms",
+    "footprint_self_test",
+];
+
+/// Those that need more than the RAM of the smallest core.
+pub const ON_LARGE_CORES: [&str; 1] = ["bench_parts"];
+
+/// Those that are measured on a Cortex-M4F alone.
+pub const ON_THE_MEASURED_CORE: [&str; 6] = [
+    "footprint_nothing",
+    "footprint_accumulator",
+    "footprint_diagnosis",
+    "footprint_spectrum",
+    "footprint_everything",
+    "footprint_words",
+];
 
 /// A linked image.
 #[derive(Clone, Debug)]
@@ -62,30 +78,10 @@ impl Image {
     /// # Errors
     /// The errors are those of [`build`](Self::build).
     pub fn build_with(name: &str, core: &Core, profile: &str) -> Result<Self> {
-        let target = core.target;
-        let toolchain = Toolchain::find(core)?;
-        let _heartbeat = Heartbeat::new(format!("the build of {name} for {core}"));
-        let mut command = toolchain.cargo("build")?;
-        command
-            .args(["--package", "images", "--bin", name])
-            .args(["--profile", profile])
-            .args(core.precision.arguments());
-        for (_, feature) in FEATURES.iter().filter(|(image, _)| *image == name) {
-            command.args(["--features", feature]);
-        }
-        // The images of both precisions have the same path, and another program may be building.
-        let lock = exclusive()?;
-        let status = command
-            .status()
-            .with_context(|| format!("cargo did not start: {REMEDY}"))?;
-        if !status.success() {
-            bail!("building the image {name} failed ({status}): {REMEDY}");
-        }
-        let built = target_directory().join(target).join(profile).join(name);
-        let path = built.with_file_name(format!("{name}-{}", core.precision.name()));
-        let elf = std::fs::read(&built).with_context(|| format!("reading {}", built.display()))?;
-        replace(&path, &elf).with_context(|| format!("writing {}", path.display()))?;
-        drop(lock);
+        build_all(&[name], &[*core], profile)?;
+        let path = artefacts(core.precision).join(core.target);
+        let path = path.join(profile).join(name);
+        let elf = std::fs::read(&path).with_context(|| format!("reading {}", path.display()))?;
         let image = Self {
             core: *core,
             path,
@@ -210,10 +206,63 @@ fn is_in_flash(kind: SectionKind) -> bool {
     )
 }
 
-/// Replaces a file by a new one. A program that is running the old file keeps it.
-fn replace(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
-    let mut file = tempfile::NamedTempFile::new_in(path.parent().unwrap_or(path))?;
-    file.write_all(bytes)?;
-    file.persist(path)?;
+/// Builds several images for several cores at once: one command for a precision, so that no core of this host waits while another one
+/// links. Images that are up to date cost a moment.
+///
+/// # Errors
+/// Fails if no compiler for the targets is found, or if the build fails.
+pub fn build_all(names: &[&str], cores: &[Core], profile: &str) -> Result<()> {
+    for precision in Precision::ALL {
+        let cores: Vec<Core> = (cores.iter().copied())
+            .filter(|core| core.precision == precision)
+            .collect();
+        let feature = |name: &str| FEATURES.iter().find(|(image, _)| *image == name);
+        let (apart, plain): (Vec<&str>, Vec<&str>) =
+            names.iter().partition(|name| feature(name).is_some());
+        if cores.is_empty() {
+            continue;
+        }
+        if !plain.is_empty() {
+            build(&plain, &[], &cores, profile)?;
+        }
+        // Another set of features is another build of everything that the images share.
+        let features: Vec<&str> = apart
+            .iter()
+            .filter_map(|name| Some(feature(name)?.1))
+            .collect();
+        if !apart.is_empty() {
+            build(&apart, &features, &cores, profile)?;
+        }
+    }
+    Ok(())
+}
+
+/// Builds images for cores of one precision.
+fn build(names: &[&str], features: &[&str], cores: &[Core], profile: &str) -> Result<()> {
+    let precision = cores
+        .first()
+        .map_or(Precision::Single, |core| core.precision);
+    let shown: Vec<&str> = cores.iter().map(|core| core.name).collect();
+    let (images, shown) = (names.join(", "), shown.join(", "));
+    let _heartbeat = Heartbeat::new(format!(
+        "the build of {images} for {shown}, {} precision",
+        precision.name()
+    ));
+    let mut command = Toolchain::cargo_for_all("build", cores)?;
+    command.args(["--package", "images", "--profile", profile]);
+    for name in names {
+        command.args(["--bin", name]);
+    }
+    command.args(precision.arguments());
+    for feature in features {
+        command.args(["--features", feature]);
+    }
+    let status = command
+        .status()
+        .with_context(|| format!("cargo did not start: {REMEDY}"))?;
+    ensure!(
+        status.success(),
+        "building {images} for {shown} failed ({status}): {REMEDY}"
+    );
     Ok(())
 }

@@ -4,11 +4,10 @@
 //! it for size. An image therefore has different sizes in the two ways. All cores are built the
 //! same way, and each way has its own budgets.
 
-use super::{CORES, Core, REMEDY, cargo};
+use super::{CORES, Core, Precision, REMEDY, cargo};
 use anyhow::{Context as _, Result, bail};
 use std::{
     fmt,
-    fs::File,
     path::{Path, PathBuf},
     process::Command,
 };
@@ -129,13 +128,12 @@ impl Toolchain {
         Ok(Self { core: *core, way })
     }
 
-    /// A cargo command such as `build` or `clippy` for the target. Its artefacts are separate from
-    /// those of the host, because the cargo that runs this program may hold the lock of the host's.
+    /// A cargo command such as `build` or `clippy` for the target, whose artefacts go to [`artefacts`].
     ///
     /// # Errors
     /// Fails if the linker is missing.
     pub fn cargo(&self, subcommand: &str) -> Result<Command> {
-        self.cargo_into(subcommand, &target_directory())
+        self.cargo_into(subcommand, &artefacts(self.core.precision))
     }
 
     /// A cargo command whose artefacts go to a folder.
@@ -143,6 +141,13 @@ impl Toolchain {
     /// # Errors
     /// Fails if the linker is missing.
     pub fn cargo_into(&self, subcommand: &str, artefacts: &Path) -> Result<Command> {
+        let mut command = self.cargo_for(subcommand, &[self.core])?;
+        command.arg("--target-dir").arg(artefacts);
+        Ok(command)
+    }
+
+    /// A cargo command for the targets of several cores, which are built at once.
+    fn cargo_for(&self, subcommand: &str, cores: &[Core]) -> Result<Command> {
         let mut command = match self.way {
             Way::Rustup => {
                 let mut command = cargo();
@@ -150,7 +155,7 @@ impl Toolchain {
                 command
             }
             Way::Debian => match linker() {
-                Some(linker) => self.debian(subcommand, &linker),
+                Some(linker) => debian(subcommand, &linker, cores),
                 None => bail!("no linker: {REMEDY}"),
             },
         };
@@ -163,15 +168,30 @@ impl Toolchain {
         ] {
             command.env_remove(variable);
         }
-        if let Some(board) = self.core.board {
-            let flags = format!("-C link-arg=--defsym={board}=1");
-            command.env(Self::flags_variable(&self.core), flags);
+        let mut targets: Vec<&str> = Vec::new();
+        for core in cores {
+            if targets.contains(&core.target) {
+                continue;
+            }
+            targets.push(core.target);
+            command.args(["--target", core.target]);
+            if let Some(board) = core.board {
+                let flags = format!("-C link-arg=--defsym={board}=1");
+                command.env(Self::flags_variable(core), flags);
+            }
         }
-        command
-            .args(["--target", self.core.target])
-            .arg("--target-dir")
-            .arg(artefacts)
-            .env("DEFMT_LOG", "info");
+        command.env("DEFMT_LOG", "info");
+        Ok(command)
+    }
+
+    /// A cargo command that builds for several cores of one precision at once, into [`artefacts`].
+    ///
+    /// # Errors
+    /// Fails if no core is given, or if no compiler or linker is installed.
+    pub fn cargo_for_all(subcommand: &str, cores: &[Core]) -> Result<Command> {
+        let first = cores.first().context("no core is given")?;
+        let mut command = Self::find(first)?.cargo_for(subcommand, cores)?;
+        command.arg("--target-dir").arg(artefacts(first.precision));
         Ok(command)
     }
 
@@ -179,51 +199,45 @@ impl Toolchain {
     pub fn flags_variable(core: &Core) -> String {
         variable(core.target, "RUSTFLAGS")
     }
-
-    fn debian(&self, subcommand: &str, linker: &Path) -> Command {
-        let mut command = if subcommand == "clippy" {
-            // Clippy must belong to the same compiler.
-            let mut command = Command::new(DEBIAN_CLIPPY);
-            command.current_dir(super::workspace());
-            command
-        } else {
-            cargo()
-        };
-        command
-            .arg(subcommand)
-            .env("RUSTC", DEBIAN_RUSTC)
-            .env("RUSTDOC", DEBIAN_RUSTDOC)
-            .env("RUSTC_BOOTSTRAP", "1")
-            .env("CARGO_UNSTABLE_BUILD_STD", "core")
-            .env(variable(self.core.target, "LINKER"), linker);
-        command
-    }
 }
 
-/// A folder for the artefacts of the cores, below the target folder in use.
+/// A command of Debian's cargo, or of its clippy, which must belong to the same compiler.
+fn debian(subcommand: &str, linker: &Path, cores: &[Core]) -> Command {
+    let mut command = if subcommand == "clippy" {
+        let mut command = Command::new(DEBIAN_CLIPPY);
+        command.current_dir(super::workspace());
+        command
+    } else {
+        cargo()
+    };
+    command
+        .arg(subcommand)
+        .env("RUSTC", DEBIAN_RUSTC)
+        .env("RUSTDOC", DEBIAN_RUSTDOC)
+        .env("RUSTC_BOOTSTRAP", "1")
+        .env("CARGO_UNSTABLE_BUILD_STD", "core");
+    for core in cores {
+        command.env(variable(core.target, "LINKER"), linker);
+    }
+    command
+}
+
+/// A folder for what is built beside the programs of the host, below the target folder in use. The cargo that runs this program may
+/// hold the lock of the host's folder.
 pub fn target_directory() -> PathBuf {
     host_target_directory().join("image")
+}
+
+/// The folder for the artefacts of a precision, for the cores and for this host. An image has the same name in both precisions, and
+/// cargo locks a folder while it builds.
+pub fn artefacts(precision: Precision) -> PathBuf {
+    target_directory().join(precision.name())
 }
 
 /// The folder into which programs of the host are built.
 pub fn host_target_directory() -> PathBuf {
     let base = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| "target".into(), PathBuf::from);
     super::workspace().join(base)
-}
-
-/// Locks that folder against other programs that build there, until the lock is dropped.
-///
-/// # Errors
-/// Fails if the folder cannot be written to.
-pub fn exclusive() -> Result<File> {
-    let folder = target_directory();
-    let lock = || -> std::io::Result<File> {
-        std::fs::create_dir_all(&folder)?;
-        let file = File::create(folder.join("images.lock"))?;
-        file.lock()?;
-        Ok(file)
-    };
-    lock().with_context(|| format!("locking {}", folder.display()))
 }
 
 /// The environment variable that sets a key of cargo's configuration for a target.

@@ -12,10 +12,10 @@ from ._axes import Axes
 from ._model import Model
 from ._page import Picture, html_table, paragraphs
 from ._parts import Bin, Comb, Covariate, DetectionLimit, FilterShape, SpectralLine, Step
+from ._source import Source
 
 if TYPE_CHECKING:
     from . import _native
-    from ._record import Record
 
 
 @dataclass(frozen=True)
@@ -86,7 +86,7 @@ class Diagnosis(Axes[AxisDiagnosis]):
     """
 
     axes: tuple[AxisDiagnosis, ...]
-    record: Record = field(repr=False, compare=False)
+    record: Source = field(repr=False, compare=False)
     _search: tuple[str, ...] = field(default=(), repr=False, compare=False)
     _filter: str | None = field(default=None, repr=False, compare=False)
     _document: dict[str, Any] = field(default_factory=dict, repr=False, compare=False)
@@ -97,7 +97,7 @@ class Diagnosis(Axes[AxisDiagnosis]):
     @classmethod
     def _of(
         cls,
-        record: Record,
+        record: Source,
         search: tuple[str, ...],
         filter: str | None,
         progress: Callable[[float], object] | None,

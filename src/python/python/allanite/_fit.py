@@ -12,11 +12,11 @@ from ._axes import Axes
 from ._model import Model
 from ._page import html_table, paragraphs
 from ._parts import Coefficient, Covariate, FilterShape, Limit, Octave
+from ._source import Source
 from .effects import Effect
 
 if TYPE_CHECKING:
     from ._diagnosis import Diagnosis
-    from ._record import Record
 
 
 @dataclass(frozen=True)
@@ -89,13 +89,13 @@ class Fit(Axes[AxisFit]):
     """
 
     axes: tuple[AxisFit, ...]
-    record: Record = field(repr=False, compare=False)
+    record: Source = field(repr=False, compare=False)
     _filter: str | None = field(default=None, repr=False, compare=False)
     _document: dict[str, Any] = field(default_factory=dict, repr=False, compare=False)
     _text: str = field(default="", repr=False, compare=False)
 
     @classmethod
-    def _of(cls, record: Record, options: list[str], filter: str | None) -> Fit:
+    def _of(cls, record: Source, options: list[str], filter: str | None) -> Fit:
         text, printed = record._native_handle().fit(options)
         document = json.loads(text)
         axes = tuple(_document.build(AxisFit, axis) for axis in document["axes"])

@@ -4,17 +4,14 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from . import _document, _native, _options
 from ._own import OwnEffect
 from ._page import Picture, html_table, paragraphs
 from ._parts import ComparedOctave, Coefficient, ModelEffect, Stretch, Worst
+from ._source import Comparable
 from .effects import Effect
-
-if TYPE_CHECKING:
-    from ._diagnosis import Diagnosis
-    from ._record import Record
 
 
 @dataclass(frozen=True)
@@ -71,7 +68,7 @@ class Model:
     @classmethod
     def _fit(
         cls,
-        of: Record | Diagnosis,
+        of: Comparable,
         axis: str,
         with_: tuple[str, ...] = (),
         without: tuple[str, ...] = (),
@@ -195,7 +192,7 @@ def _again(of: Any, axis: str, with_: Any, without: Any, filter: Any, own: Any, 
 
 
 def _compared(
-    of: Record | Diagnosis,
+    of: Comparable,
     axis: str,
     with_: tuple[str, ...],
     without: tuple[str, ...],

@@ -1,0 +1,149 @@
+//! The JSON document of a comparison.
+
+use super::compared::Compared;
+use crate::command::{
+    fit,
+    output::model_json::{self, Effect, Worst},
+};
+use allanite::{
+    Model,
+    comparison::{self, ComparedOctave},
+};
+use allanite_log::unit::Unit;
+use serde::Serialize;
+use serde_json::{Map, Value};
+
+/// The document of one file.
+#[derive(Serialize)]
+pub(in crate::command) struct Document<'a> {
+    axes: Vec<Axis<'a>>,
+}
+
+#[derive(Serialize)]
+struct Axis<'a> {
+    axis: &'a str,
+    rate_hz: f64,
+    unit: Unit,
+    effects: Vec<Effect>,
+    coefficients: Vec<fit::json::Term>,
+    octaves: Vec<Octave>,
+    chi2: f64,
+    dof: usize,
+    p_value: f64,
+    rms_percent: f64,
+    worst: Option<Worst>,
+    stretches: Vec<Stretch>,
+    words: String,
+    held_out: Option<HeldOut>,
+}
+
+/// An octave: deviations in the log's unit, and the difference of the variances in percent.
+#[derive(Serialize)]
+struct Octave {
+    m: u32,
+    tau_s: f64,
+    measured: f64,
+    model: f64,
+    percent: f64,
+    z: f64,
+    shares: Map<String, Value>,
+}
+
+#[derive(Serialize)]
+struct Stretch {
+    side: &'static str,
+    from_s: f64,
+    to_s: f64,
+}
+
+/// The number of held-out samples, with which the model was compared, and how well it fits the others.
+#[derive(Serialize)]
+struct HeldOut {
+    samples: u64,
+    fitted: Fitted,
+}
+
+#[derive(Serialize)]
+struct Fitted {
+    samples: u64,
+    chi2: f64,
+    dof: usize,
+    p_value: f64,
+    rms_percent: f64,
+}
+
+/// The document of the axes of one file.
+pub(in crate::command) fn document(compared: &[Compared]) -> Document<'_> {
+    Document {
+        axes: compared.iter().map(axis).collect(),
+    }
+}
+
+fn axis(compared: &Compared) -> Axis<'_> {
+    let Compared {
+        axis,
+        model,
+        fit,
+        comparison,
+        held_out,
+        ..
+    } = compared;
+    let held_out = held_out.as_ref().map(|held_out| HeldOut {
+        samples: held_out.axis.samples,
+        fitted: Fitted {
+            samples: axis.samples,
+            chi2: fit.chi_squared,
+            dof: fit.degrees_of_freedom,
+            p_value: fit.p_value,
+            rms_percent: held_out.fitted_rms_percent,
+        },
+    });
+    Axis {
+        axis: &axis.axis,
+        rate_hz: axis.rate_hz,
+        unit: axis.unit,
+        effects: model_json::effects(model, fit),
+        coefficients: model_json::coefficients(fit, axis.unit),
+        octaves: comparison
+            .octaves
+            .iter()
+            .map(|one| octave(one, model))
+            .collect(),
+        chi2: comparison.chi_squared,
+        dof: comparison.degrees_of_freedom,
+        p_value: comparison.p_value,
+        rms_percent: comparison.rms_percent,
+        worst: model_json::worst(comparison),
+        stretches: comparison.stretches().map(stretch).collect(),
+        words: comparison.to_string(),
+        held_out,
+    }
+}
+
+/// Adds a share by the name of its effect. Those of two effects with the same name are added up.
+fn add(mut shares: Map<String, Value>, (name, share): (&str, f32)) -> Map<String, Value> {
+    let before = shares.get(name).and_then(Value::as_f64).unwrap_or(0.0);
+    shares.insert(name.to_owned(), (before + f64::from(share)).into());
+    shares
+}
+
+fn octave(octave: &ComparedOctave, model: &Model) -> Octave {
+    let names = model.terms().iter().map(|term| term.effect.name());
+    Octave {
+        m: octave.m,
+        tau_s: octave.tau_s,
+        measured: octave.measured.sqrt(),
+        model: octave.model.sqrt(),
+        percent: octave.percent(),
+        z: octave.z,
+        shares: names.zip(octave.shares).fold(Map::new(), add),
+    }
+}
+
+fn stretch(one: comparison::Stretch) -> Stretch {
+    Stretch {
+        side: if one.above { "above" } else { "below" },
+        from_s: one.from_s,
+        to_s: one.to_s,
+    }
+}

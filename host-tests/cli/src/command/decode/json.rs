@@ -1,0 +1,252 @@
+//! Factory certificates and snapshots as a JSON document.
+
+use super::decoded::{self, Decoded, Stored, StoredSnapshot};
+use crate::command::output::{event_json, model_json};
+use allanite::{
+    diagnosis::Verdict,
+    storage::{
+        self, AxisCertificate, Certificate, CertifiedBand, CertifiedLimit, CertifiedSlope,
+        CertifiedState, CertifiedTerm,
+    },
+};
+use allanite_host::units;
+use allanite_log::unit::Unit;
+use serde::Serialize;
+use serde_json::{Map, Value, json};
+use std::{
+    io::{self, Write},
+    path::Path,
+};
+
+#[derive(Serialize)]
+struct Document {
+    records: Vec<Device>,
+    snapshots: Vec<Snapshot>,
+}
+
+#[derive(Serialize)]
+struct Device {
+    file: String,
+    device: String,
+    device_hex: String,
+    firmware: String,
+    unit: Unit,
+    temperature_c: Option<(f32, f32)>,
+    duration_s: f64,
+    rate_hz: f64,
+    samples: u64,
+    gaps: u64,
+    axes: Vec<Axis>,
+}
+
+/// One axis of a record; numbers that are not finite are `null`.
+#[derive(Serialize)]
+struct Axis {
+    axis: String,
+    verdict: Option<&'static str>,
+    reason: Option<String>,
+    found: Vec<&'static str>,
+    coefficients: Vec<Term>,
+    /// Covariance of the squared coefficients, as a lower triangle.
+    covariance: Vec<Vec<f64>>,
+    chi2: f64,
+    dof: u16,
+    p_value: f64,
+    tolerance: f32,
+    /// The sizes of effects that the record would have shown with a probability of 95 %.
+    detection_limits: Vec<model_json::DetectionRange>,
+    /// The covariates that the rate follows.
+    covariates: Vec<Slope>,
+    /// Effects that explain the record about as well as those of the model.
+    ambiguous: Vec<Doubt>,
+    /// The bands in which the spectrum differs from the model.
+    bands: Vec<Band>,
+    /// Whether nothing happened during the record; `null` if its course was not kept.
+    stationary: Option<bool>,
+    events: Vec<event_json::Event>,
+}
+
+#[derive(Serialize)]
+struct Slope {
+    covariate: u8,
+    slope: f32,
+    error: f32,
+}
+
+#[derive(Serialize)]
+struct Doubt {
+    effect: &'static str,
+    other: &'static str,
+}
+
+#[derive(Serialize)]
+struct Band {
+    from_hz: f32,
+    to_hz: f32,
+    z: f32,
+}
+
+#[derive(Serialize)]
+struct Term {
+    effect: &'static str,
+    symbol: Option<&'static str>,
+    value: f32,
+    lower: f32,
+    upper: f32,
+    square_error: f32,
+    state: &'static str,
+    after_s: Option<f32>,
+    unit: Option<String>,
+    shape: Map<String, Value>,
+}
+
+#[derive(Serialize)]
+struct Snapshot {
+    file: String,
+    samples: u64,
+    gaps: u64,
+    octaves: Vec<Octave>,
+}
+
+#[derive(Serialize)]
+struct Octave {
+    m: u32,
+    differences: u64,
+    /// The sum of squared differences; `null` if it exceeds 128 bits.
+    sum: Option<u128>,
+}
+
+/// Prints all certificates and snapshots as one JSON document.
+pub(super) fn print(decoded: &[Decoded], output: &mut impl Write) -> io::Result<()> {
+    let mut document = Document {
+        records: Vec::new(),
+        snapshots: Vec::new(),
+    };
+    for one in decoded {
+        match &one.stored {
+            Stored::Certificate(record) => document.records.push(device(&one.file, record)),
+            Stored::Snapshot(stored) => document.snapshots.push(snapshot(&one.file, stored)),
+        }
+    }
+    serde_json::to_writer(&mut *output, &document)?;
+    writeln!(output)
+}
+
+fn device(file: &Path, record: &Certificate) -> Device {
+    let conditions = &record.conditions;
+    let axes = record.axes.iter().enumerate();
+    Device {
+        file: file.to_string_lossy().into_owned(),
+        device: decoded::device(record),
+        device_hex: decoded::hex(record),
+        firmware: decoded::firmware(record),
+        unit: record.unit.into(),
+        temperature_c: conditions.temperature_c,
+        duration_s: conditions.duration_s,
+        rate_hz: conditions.rate_hz,
+        samples: conditions.samples,
+        gaps: conditions.gaps,
+        axes: axes
+            .map(|(i, one)| axis(decoded::axis_name(i), one, record.unit.into()))
+            .collect(),
+    }
+}
+
+fn axis(name: String, axis: &AxisCertificate, unit: Unit) -> Axis {
+    let (count, findings) = (axis.terms.len(), &axis.findings);
+    let row = |i: usize| (0..=i).map(|j| axis.covariance(i, j)).collect();
+    Axis {
+        axis: name,
+        verdict: axis.verdict.map(Verdict::name),
+        reason: match axis.verdict {
+            Some(Verdict::Invalid(reason)) => Some(reason.to_string()),
+            _ => None,
+        },
+        found: axis.found().map(|term| term.effect.name()).collect(),
+        coefficients: axis.terms.iter().map(|one| term(one, unit)).collect(),
+        covariance: (0..count).map(row).collect(),
+        chi2: axis.chi_squared,
+        dof: axis.degrees_of_freedom,
+        p_value: axis.p_value,
+        tolerance: axis.tolerance,
+        detection_limits: axis
+            .limits
+            .iter()
+            .filter_map(CertifiedLimit::range)
+            .map(|range| model_json::detection_range(&range, unit))
+            .collect(),
+        covariates: findings.covariates.iter().map(slope).collect(),
+        ambiguous: findings.doubts.iter().map(doubt).collect(),
+        bands: findings.bands.iter().map(band).collect(),
+        stationary: findings.is_stationary(),
+        events: findings
+            .events
+            .iter()
+            .flatten()
+            .map(|event| event_json::event(&event.event()))
+            .collect(),
+    }
+}
+
+fn slope(slope: &CertifiedSlope) -> Slope {
+    Slope {
+        covariate: slope.covariate,
+        slope: slope.value,
+        error: slope.error,
+    }
+}
+
+fn doubt(doubt: &storage::Doubt) -> Doubt {
+    Doubt {
+        effect: doubt.effect.name(),
+        other: doubt.other.name(),
+    }
+}
+
+fn band(band: &CertifiedBand) -> Band {
+    Band {
+        from_hz: band.from_hz,
+        to_hz: band.to_hz,
+        z: band.z,
+    }
+}
+
+fn term(term: &CertifiedTerm, unit: Unit) -> Term {
+    let effect = term.effect.effect();
+    let parameters = effect.map_or(&[][..], |effect| effect.parameters());
+    let shape = parameters.iter().zip(&term.shape).map(|(parameter, one)| {
+        let numbers = json!({ "value": one.value, "lower": one.lower, "upper": one.upper });
+        (parameter.name.to_owned(), numbers)
+    });
+    let (state, after_s) = match term.state {
+        CertifiedState::Measured => ("measured", None),
+        CertifiedState::UpperBound => ("upper_bound", None),
+        CertifiedState::NotObservable { after_s } => ("not_observable", after_s),
+    };
+    Term {
+        effect: term.effect.name(),
+        symbol: effect.map(|effect| effect.symbol()),
+        value: term.value,
+        lower: term.lower,
+        upper: term.upper,
+        square_error: term.square_error,
+        state,
+        after_s,
+        unit: effect.map(|effect| units::unit(unit, effect.half_seconds())),
+        shape: shape.collect(),
+    }
+}
+
+fn snapshot(file: &Path, stored: &StoredSnapshot) -> Snapshot {
+    let octaves = stored.octaves.iter().map(|octave| Octave {
+        m: octave.m,
+        differences: octave.differences,
+        sum: octave.sum.to_u128(),
+    });
+    Snapshot {
+        file: file.to_string_lossy().into_owned(),
+        samples: stored.samples,
+        gaps: stored.gaps,
+        octaves: octaves.collect(),
+    }
+}

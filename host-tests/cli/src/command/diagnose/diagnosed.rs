@@ -1,0 +1,493 @@
+//! A record and the steps of its diagnosis, which `diagnose` prints, `report` shows and `plot` draws.
+
+use super::{
+    given_filter::Better,
+    lines::{self, Line, comb_notes, half_rate_notes},
+};
+use crate::command::{
+    input::record::{self, CovariateArguments, LogArguments},
+    known_filter::{self, KnownFilter, known_filter},
+    output::{disturbance::invalid, rounding},
+    tried::{TriedCovariate, tried},
+};
+use allanite::{
+    Curve, Error, Model, Record, Scale, Term,
+    course::Course,
+    covariate::{self, Slope},
+    detection::{Detection, Limit, Ranges},
+    diagnosis::{Addition, Candidate, FollowedCovariate, Options, Step, Verdict, alternative},
+    effect::CATALOGUE,
+    spectrum::Spectrum,
+};
+use allanite_host::{
+    comb::Comb,
+    curve_file::AxisCurve,
+    dependence::candidates::{Candidate as Series, Candidates},
+    diagnosis::{diagnose, go_on},
+    stationarity::Stationarity,
+    words,
+};
+use allanite_log::{BINS, Disturbance, Evidence, OCTAVES, Spectrogram, failure::Failure};
+use clap::Args;
+use rayon::iter::{IntoParallelIterator, ParallelIterator};
+use std::path::{Path, PathBuf};
+
+/// What a p-value is worth after an effect was chosen.
+const SELECTED: &str = "the last p-value takes the added effects for known: they were the best of many, so it is too high";
+
+/// The input of a diagnosis and its settings.
+#[derive(Debug, Args)]
+pub(crate) struct DiagnosisArguments {
+    /// A log (text, .npy, .ulg, or a bag of ROS), or a curve file (.json) that `measure` wrote
+    pub(crate) input: PathBuf,
+    #[command(flatten)]
+    settings: DiagnosisSettings,
+}
+
+impl DiagnosisArguments {
+    /// Diagnoses every axis of the input.
+    ///
+    /// # Errors
+    /// When the input cannot be read, or an axis cannot be fitted.
+    pub(crate) fn diagnosed(&self) -> Result<Vec<Diagnosed>, Failure> {
+        self.settings.diagnosed(&self.input)
+    }
+
+    /// Diagnoses every axis of the input, and keeps the spectrogram of each beside it, for a page that shows it.
+    ///
+    /// # Errors
+    /// When the input cannot be read, or an axis cannot be fitted.
+    pub(crate) fn diagnosed_for_page(&self) -> Result<Vec<OfPage>, Failure> {
+        let DiagnosisSettings {
+            about_log,
+            covariates,
+            ..
+        } = &self.settings;
+        let axes = record::read_for_page(&self.input, about_log, covariates)?;
+        self.settings.diagnosed_of(&self.input, axes)
+    }
+
+    /// Whether the search begins with the five terms and ends where it ends by itself.
+    pub(crate) fn is_plain(&self) -> bool {
+        self.settings.max_effects.is_none() && self.settings.filter.is_none()
+    }
+}
+
+/// The settings of a diagnosis.
+#[derive(Debug, Args)]
+pub(crate) struct DiagnosisSettings {
+    /// Largest number of effects to add [default: 4]
+    #[arg(long, value_name = "N")]
+    max_effects: Option<usize>,
+    #[command(flatten)]
+    covariates: CovariateArguments,
+    #[command(flatten)]
+    filter: KnownFilter,
+    #[command(flatten)]
+    about_log: LogArguments,
+}
+
+impl DiagnosisSettings {
+    /// Diagnoses every axis of a record.
+    pub(crate) fn diagnosed(&self, path: &Path) -> Result<Vec<Diagnosed>, Failure> {
+        let axes = record::read_with_evidence(path, &self.about_log, &self.covariates)?;
+        let diagnosed = self.diagnosed_of(path, axes)?.into_iter();
+        Ok(diagnosed.map(|(diagnosed, _)| diagnosed).collect())
+    }
+
+    fn diagnosed_of(
+        &self,
+        path: &Path,
+        axes: Vec<(AxisCurve, Evidence)>,
+    ) -> Result<Vec<OfPage>, Failure> {
+        let model = self.filter.model()?;
+        let diagnose = |(axis, mut evidence): (AxisCurve, Evidence)| {
+            let name = axis.axis.clone();
+            let spectrogram = evidence.spectrogram.take();
+            Diagnosed::new(axis, evidence, &model, self.max_effects)
+                .map(|diagnosed| (diagnosed, spectrogram))
+                .map_err(|error| record::library_failure(path, &name, error))
+        };
+        // A page has no threads. The first failure is that of the first axis that has one.
+        let diagnosed: Vec<_> = match cfg!(target_family = "wasm") {
+            true => axes.into_iter().map(diagnose).collect(),
+            false => axes.into_par_iter().map(diagnose).collect(),
+        };
+        diagnosed.into_iter().collect()
+    }
+}
+
+/// An axis, and its spectrogram, if it is a log that is long enough.
+pub(crate) type OfPage = (Diagnosed, Option<Spectrogram>);
+
+/// One axis, and the steps from the five terms to the last model.
+pub(crate) struct Diagnosed {
+    pub(crate) axis: AxisCurve,
+    /// The steps, at least one; the last one has the model that the diagnosis ends with.
+    pub(crate) steps: Vec<Step<OCTAVES, BINS>>,
+    pub(crate) verdict: Verdict,
+    /// What fits better than the filter that was given; `None` if that fits or none was given.
+    pub(crate) better: Option<Better>,
+    /// The sizes of effects that the record would have shown. Empty unless the last model is adequate.
+    pub(crate) limits: Vec<Limit>,
+    /// What happened during the record.
+    pub(crate) stationarity: Stationarity,
+    /// The sinusoids of the last model, and those of them that are harmonics of one fundamental.
+    pub(crate) lines: Vec<Line>,
+    pub(crate) combs: Vec<Comb>,
+    /// The course of the record. A curve file has none.
+    pub(crate) course: Option<Course>,
+    /// The columns that were recorded beside the axis, with their means in the blocks of the course.
+    pub(crate) columns: Vec<(String, Vec<f64>)>,
+    /// The motion or the spikes that make the record not valid, if there are any.
+    pub(crate) disturbance: Option<Disturbance>,
+    /// The covariates that were tried, with what was found of each. Empty for a record that is not valid.
+    pub(crate) tried: Vec<TriedCovariate>,
+    /// The options of the search for effects.
+    pub(crate) options: Options,
+    /// The covariates, with what the axis has in common with each of them.
+    candidates: Candidates,
+}
+
+impl Diagnosed {
+    /// Diagnoses an axis, from this model on.
+    pub(crate) fn new(
+        axis: AxisCurve,
+        mut evidence: Evidence,
+        model: &Model,
+        max_effects: Option<usize>,
+    ) -> Result<Self, Error> {
+        let default = Options::default();
+        let options = Options {
+            max_effects: max_effects.unwrap_or(default.max_effects),
+            ..default
+        };
+        let (course, columns) = (
+            evidence.course.take(),
+            std::mem::take(&mut evidence.columns),
+        );
+        let disturbance = evidence.disturbance.take();
+        let (curve, spectrum, densities) = (axis.curve()?, axis.spectrum()?, axis.course()?);
+        let candidates = Candidates::new(&curve, &spectrum, model, &evidence)?;
+        let record = Record {
+            course: densities.as_ref(),
+            kurtosis: Some(&evidence.kurtosis),
+            invalid: evidence.invalid,
+            ..candidates.record(&curve, &spectrum)
+        };
+        let diagnose = |model: &Model, options| {
+            let mut steps = Vec::new();
+            let verdict = diagnose(record, model, &CATALOGUE, options, |step| {
+                steps.push(step.clone());
+            })?;
+            Ok((steps, verdict))
+        };
+        let (mut steps, mut verdict) = diagnose(model, options)?;
+        let five = |options| diagnose(&Model::ieee_952(), options);
+        let better = match verdict {
+            Verdict::Invalid(_) => None,
+            _ => Better::than_given(&steps, options, five)?,
+        };
+        if better.is_some() {
+            Better::keep_what_is_sure(&mut steps);
+            verdict = match steps.len() {
+                1 => Verdict::Unexplained,
+                _ => Verdict::Incomplete,
+            };
+        }
+        let mut diagnosed = Self {
+            axis,
+            steps,
+            verdict,
+            better,
+            limits: Vec::new(),
+            stationarity: Stationarity::default(),
+            lines: Vec::new(),
+            combs: Vec::new(),
+            course: None,
+            columns,
+            disturbance,
+            tried: Vec::new(),
+            options,
+            candidates,
+        };
+        diagnosed.limits = diagnosed.detection_limits()?;
+        diagnosed.lines = diagnosed.lines()?;
+        diagnosed.combs = lines::combs(&diagnosed.lines, diagnosed.axis.rate_hz);
+        diagnosed.tried = diagnosed.tried_in_last()?;
+        if let Some(course) = course {
+            diagnosed.stationarity = diagnosed.stationarity_in(&course)?;
+            diagnosed.course = Some(course);
+        }
+        Ok(diagnosed)
+    }
+
+    /// What happened during the record, beside the noise of the last model.
+    fn stationarity_in(&self, course: &Course) -> Result<Stationarity, Error> {
+        let valid = !matches!(self.verdict, Verdict::Invalid(_) | Verdict::TooShort);
+        let Some(last) = self.steps.last().filter(|_| valid) else {
+            return Ok(Stationarity::default());
+        };
+        let scale = Scale::new(self.axis.rate_per_count, self.axis.rate_hz)?;
+        let (curve, _) = self.observed_in(last)?;
+        let followed = last.covariate.as_ref().map_or(Vec::new(), |followed| {
+            self.candidates.followed(followed, course.block_length())
+        });
+        Stationarity::of(course, scale, &curve, &last.model, &followed)
+    }
+
+    /// What the last step tells of every covariate.
+    fn tried_in_last(&self) -> Result<Vec<TriedCovariate>, Error> {
+        let valid = !matches!(self.verdict, Verdict::Invalid(_));
+        let Some(last) = self.steps.last().filter(|_| valid) else {
+            return Ok(Vec::new());
+        };
+        let curve = self.axis.curve()?;
+        Ok(tried(&curve, &self.candidates, last))
+    }
+
+    /// The sizes of effects that the record would have shown.
+    fn detection_limits(&self) -> Result<Vec<Limit>, Error> {
+        let mut limits = Vec::new();
+        let adequate = matches!(self.verdict, Verdict::Adequate | Verdict::Improved);
+        if let Some(last) = self.steps.last().filter(|_| adequate) {
+            let (curve, spectrum) = self.observed_in(last)?;
+            let course = self.axis.course()?;
+            let record = Record {
+                course: course.as_ref(),
+                ..Record::new(&curve, &spectrum)
+            };
+            Detection::new(record, last, &CATALOGUE, self.options)
+                .run(|limit| limits.push(limit), &mut go_on);
+        }
+        Ok(limits)
+    }
+
+    /// The sinusoids of the last model.
+    fn lines(&self) -> Result<Vec<Line>, Error> {
+        let Some(last) = self.steps.last() else {
+            return Ok(Vec::new());
+        };
+        let (curve, spectrum) = self.observed_in(last)?;
+        lines::lines(Record::new(&curve, &spectrum), last)
+    }
+
+    /// The limits of detection as ranges of shapes.
+    pub(crate) fn ranges(&self) -> Ranges {
+        let mut ranges = Ranges::default();
+        self.limits.iter().for_each(|limit| ranges.push(limit));
+        ranges
+    }
+
+    /// The curve and the spectrum on which a step was judged: without what follows a covariate.
+    pub(crate) fn observed_in(
+        &self,
+        step: &Step<OCTAVES, BINS>,
+    ) -> Result<(Curve<OCTAVES>, Spectrum<BINS>), Error> {
+        let (curve, spectrum) = (self.axis.curve()?, self.axis.spectrum()?);
+        let (mut corrected, mut densities) = (curve.clone(), spectrum.clone());
+        if let Some(followed) = &step.covariate {
+            let record = self.candidates.record(&curve, &spectrum);
+            followed.correct(&record, &mut corrected, &mut densities);
+        }
+        Ok((corrected, densities))
+    }
+
+    /// The verdict, as it is written in files. That of a record in which something happened is `not_stationary`,
+    /// whether its curve is explained or not.
+    pub(crate) fn verdict_name(&self) -> &'static str {
+        if self.stationarity.is_disturbed() {
+            "not_stationary"
+        } else {
+            self.verdict.name()
+        }
+    }
+
+    /// The first step, which has the five terms, and the last one.
+    pub(crate) fn ends(&self) -> Option<(&Step<OCTAVES, BINS>, &Step<OCTAVES, BINS>)> {
+        self.steps.first().zip(self.steps.last())
+    }
+
+    /// Why the record is not valid, if it is not.
+    pub(crate) fn invalid(&self) -> Option<String> {
+        match self.verdict {
+            Verdict::Invalid(reason) => Some(invalid(
+                &reason,
+                self.disturbance.as_ref(),
+                (&self.axis.axis, self.axis.rate_hz, self.axis.unit),
+            )),
+            _ => None,
+        }
+    }
+
+    /// The motion that makes the record not valid, if there is one.
+    pub(crate) fn motion(&self) -> impl Iterator<Item = &Disturbance> {
+        self.disturbance.iter().filter(|one| one.is_motion)
+    }
+
+    /// What the last model subtracts of what was recorded alongside, and how much of χ² that explains: the sum of the
+    /// squares of its slopes in standard errors. `None` if the rate follows nothing.
+    pub(crate) fn dependence(&self) -> Option<(String, f64)> {
+        let followed = self.steps.last()?.covariate.as_ref()?;
+        let squares = self.slopes(followed).into_iter();
+        let squares = squares.map(|(slope, _)| slope.z().powi(2)).sum();
+        Some((self.covariate(followed).join(" and "), squares))
+    }
+
+    /// The error of a step, which falls from step to step: χ² of the curve and the spectrum, and, as long as it is not
+    /// subtracted, what the rate follows of a covariate. Twice a logarithm of a likelihood ratio is the sum of both.
+    pub(crate) fn chi_squared(&self, at: usize) -> f64 {
+        let step = &self.steps[at];
+        let dependence = match step.covariate {
+            Some(_) => 0.0,
+            None => self.dependence().map_or(0.0, |(_, squares)| squares),
+        };
+        step.fit.chi_squared + dependence
+    }
+
+    /// The model of a step in words: `five terms + sinusoid`.
+    pub(crate) fn model_name(&self, step: usize) -> String {
+        let Some(step) = self.steps.get(step) else {
+            return String::new();
+        };
+        let channel = step
+            .covariate
+            .as_ref()
+            .map(|followed| self.covariate(followed).join(" + "));
+        let added = self
+            .added_in(step)
+            .map(|term| words::plain(term.effect.name()));
+        let asked = self.steps.first().map(|first| &first.model);
+        let parts = asked.map(known_filter::terms).into_iter();
+        let parts = parts.chain(channel).chain(added);
+        parts.collect::<Vec<_>>().join(" + ")
+    }
+
+    /// The filter that was given.
+    pub(crate) fn filter(&self) -> Option<&Term> {
+        known_filter(&self.steps.first()?.model)
+    }
+
+    /// The step that would have followed if this candidate had been added.
+    ///
+    /// # Errors
+    /// When the model with the candidate cannot be fitted in full.
+    pub(crate) fn alternative(
+        &self,
+        step: usize,
+        candidate: &Candidate,
+    ) -> Result<Step<OCTAVES, BINS>, Error> {
+        let step = &self.steps[step];
+        let (curve, spectrum) = self.observed_in(step)?;
+        alternative(Record::new(&curve, &spectrum), step, candidate)
+    }
+
+    /// The effects that were added, as in the last model. Covariates are not among them.
+    pub(super) fn added(&self) -> impl Iterator<Item = &Term> {
+        self.steps
+            .last()
+            .into_iter()
+            .flat_map(|last| self.added_in(last))
+    }
+
+    /// The effects of a step that are not in the model of the first step.
+    fn added_in<'a>(&'a self, step: &'a Step<OCTAVES, BINS>) -> impl Iterator<Item = &'a Term> {
+        let asked = self.steps.first();
+        step.model.terms().iter().filter(move |term| {
+            let asked = asked.map(|asked| asked.model.position(term.effect.name()));
+            asked.flatten().is_none()
+        })
+    }
+
+    /// Names of the covariate and the effects that were added.
+    pub(crate) fn missing(&self) -> impl Iterator<Item = &'static str> {
+        let followed = self.steps.last().and_then(|last| last.covariate);
+        let covariate = followed.map(|_| covariate::NAME);
+        covariate
+            .into_iter()
+            .chain(self.added().map(|term| term.effect.name()))
+    }
+
+    /// The addition of each step that has ambiguous alternatives, with the names of these alternatives:
+    /// they explain the curve about as well.
+    pub(crate) fn ambiguous(&self) -> impl Iterator<Item = (&'static str, &[&'static str])> {
+        self.steps.iter().filter_map(|step| {
+            let others = step.ambiguous.as_slice();
+            let added = step.added.as_ref().filter(|_| !others.is_empty())?;
+            Some((added_name(added), others))
+        })
+    }
+
+    /// The names of the covariates that the rate depends on.
+    pub(crate) fn covariate(&self, followed: &FollowedCovariate) -> Vec<&str> {
+        let slopes = self.slopes(followed).into_iter();
+        slopes
+            .map(|(_, candidate)| candidate.name.as_str())
+            .collect()
+    }
+
+    /// The slopes with which the rate follows covariates.
+    pub(crate) fn slopes(&self, followed: &FollowedCovariate) -> Vec<(Slope, &Series)> {
+        self.candidates.slopes(followed)
+    }
+
+    /// Notes on the result, one line each.
+    pub(crate) fn notes(&self) -> Vec<String> {
+        let Some((first, last)) = self.ends() else {
+            return Vec::new();
+        };
+        let mut notes = Vec::new();
+        if self.verdict == Verdict::TooShort {
+            notes.push("there are too few octaves to judge the model: record longer".into());
+        }
+        match self.invalid() {
+            Some(reason) => notes.push(reason),
+            None => notes.extend(rounding::note(&self.axis, &last.fit)),
+        }
+        notes.extend(self.stationarity.notes(self.axis.unit));
+        let tried = self.tried.iter();
+        notes.extend(tried.map(|tried| format!("tried {}", tried.words(self.axis.unit))));
+        for (added, others) in self.ambiguous() {
+            notes.push(format!(
+                "{} is ambiguous: {} would explain this curve as well",
+                words::in_sentence(added),
+                words::alternatives(others.iter().copied())
+            ));
+        }
+        if self.added().next().is_some() {
+            notes.extend(words::open_white_noise(&last.fit, self.axis.unit));
+            let octaves = last.comparison.octaves.len();
+            let (rate_hz, unit) = (self.axis.rate_hz, self.axis.unit);
+            notes.extend(words::shared_plateau(
+                &last.model,
+                &last.fit,
+                rate_hz,
+                octaves,
+                unit,
+            ));
+        }
+        notes.extend(comb_notes(&self.lines, &self.combs));
+        notes.extend(half_rate_notes(&self.lines, self.axis.rate_hz));
+        if self.added().next().is_some() && self.verdict == Verdict::Improved {
+            notes.push(SELECTED.into());
+        }
+        notes.extend(words::widened(&last.fit));
+        if self.missing().count() > 0 {
+            let [before, after] = [first, last].map(|step| (&step.model, &step.fit));
+            notes.extend(words::damage(before, after, self.axis.unit));
+        }
+        let aliases = self
+            .added()
+            .filter_map(|term| words::alias(term, self.axis.rate_hz));
+        notes.extend(aliases);
+        notes
+    }
+}
+
+/// The name of an addition as it is written in files.
+pub(crate) fn added_name(added: &Addition) -> &'static str {
+    match added {
+        Addition::Effect(term) => term.effect.name(),
+        _ => covariate::NAME,
+    }
+}

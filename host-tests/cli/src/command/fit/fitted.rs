@@ -1,0 +1,162 @@
+//! The five terms fitted to an axis.
+
+use super::judged::Judged;
+use crate::command::{
+    input::record,
+    output::{disturbance::invalid, rounding},
+    tried::{self, TriedCovariate},
+};
+use allanite::{
+    Curve, Model, Record,
+    fit::{Fit, Method, Options, fit},
+};
+use allanite_host::{curve_file::AxisCurve, words};
+use allanite_log::{Evidence, OCTAVES, failure::Failure};
+use clap::ValueEnum;
+use std::path::Path;
+
+/// The names of the methods, which differ in how they weight the octaves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum MethodName {
+    /// Unweighted, unconstrained least squares, as a baseline
+    Ordinary,
+    /// The same without the octaves whose relative error exceeds 25 %
+    AccuratePart,
+    /// The standard error of each octave is its relative accuracy times its value; unconstrained
+    RelativeAccuracy,
+    /// The weight of each octave follows from its number of clusters; unconstrained, for comparison only
+    ClusterCount,
+    /// The weights follow from the covariance of the curve; coefficients cannot be negative
+    Covariance,
+}
+
+impl MethodName {
+    const fn method(self) -> Method {
+        match self {
+            Self::Ordinary => Method::Ordinary,
+            Self::AccuratePart => Method::AccuratePart,
+            Self::RelativeAccuracy => Method::RelativeAccuracy,
+            Self::ClusterCount => Method::ClusterCount,
+            Self::Covariance => Method::Covariance,
+        }
+    }
+
+    /// The method as the option spells it.
+    pub(crate) const fn name(self) -> &'static str {
+        match self {
+            Self::Ordinary => "ordinary",
+            Self::AccuratePart => "accurate-part",
+            Self::RelativeAccuracy => "relative-accuracy",
+            Self::ClusterCount => "cluster-count",
+            Self::Covariance => "covariance",
+        }
+    }
+}
+
+/// An axis with its curve and its fit.
+pub(crate) struct Fitted {
+    pub(crate) axis: AxisCurve,
+    pub(crate) curve: Curve<OCTAVES>,
+    pub(crate) model: Model,
+    pub(crate) method: MethodName,
+    pub(crate) fit: Fit,
+    /// Why the curve is not valid, in words.
+    pub(crate) invalid: Option<String>,
+    /// The covariates that were tried.
+    pub(crate) tried: Vec<TriedCovariate>,
+    /// What the limits that were asked for say.
+    pub(crate) limits: Vec<Judged>,
+}
+
+impl Fitted {
+    /// Fits a model, which is the five terms or has them behind a known filter, to an axis of a file.
+    ///
+    /// # Errors
+    /// When the curve cannot be fitted; the failure names the file and the axis.
+    pub(crate) fn new(
+        path: &Path,
+        axis: AxisCurve,
+        model: &Model,
+        method: MethodName,
+    ) -> Result<Self, Failure> {
+        let options = Options {
+            method: method.method(),
+            ..Options::default()
+        };
+        let fitted = axis.curve().and_then(|curve| {
+            let spectrum = axis.spectrum()?;
+            let observed = Record::new(&curve, &spectrum);
+            let fit = fit(observed, model, options)?;
+            Ok((curve, fit))
+        });
+        match fitted {
+            Ok((curve, fit)) => Ok(Self {
+                axis,
+                curve,
+                model: model.clone(),
+                method,
+                fit,
+                invalid: None,
+                tried: Vec::new(),
+                limits: Vec::new(),
+            }),
+            Err(error) => Err(record::library_failure(path, &axis.axis, error)),
+        }
+    }
+
+    /// Fits a model to an axis of a file as [`new`](Self::new) does, and tries the covariates of its evidence.
+    ///
+    /// # Errors
+    /// As of [`new`](Self::new).
+    pub(crate) fn with_evidence(
+        path: &Path,
+        axis: AxisCurve,
+        model: &Model,
+        method: MethodName,
+        evidence: Evidence,
+    ) -> Result<Self, Failure> {
+        let fitted = Self::new(path, axis, model, method)?;
+        let name = &fitted.axis.axis;
+        let reason = evidence.invalid;
+        let spectrum = fitted.axis.spectrum();
+        let tried = spectrum
+            .and_then(|spectrum| tried::beside_model(&fitted.curve, &spectrum, &evidence, model));
+        let disturbance = evidence.disturbance.as_ref();
+        let unit = fitted.axis.unit;
+        Ok(Self {
+            invalid: reason
+                .map(|reason| invalid(&reason, disturbance, (name, fitted.axis.rate_hz, unit))),
+            tried: tried.map_err(|error| record::library_failure(path, name, error))?,
+            ..fitted
+        })
+    }
+
+    /// Whether the curve is valid: the samples are, and rounding does not hide their noise.
+    pub(crate) fn is_valid(&self) -> bool {
+        self.invalid.is_none() && !rounding::is_coarse(&self.axis)
+    }
+
+    /// Notes on what was recorded alongside, a sentence each.
+    pub(crate) fn covariate_notes(&self) -> Vec<String> {
+        // Where a model does not explain the record, a slope that does not stand out may do so beside another one.
+        let explains = self.fit.is_adequate() != Some(false);
+        let tells = explains || self.tried.iter().any(TriedCovariate::acts);
+        let (told, untold): (Vec<_>, Vec<_>) = self.tried.iter().partition(|_| tells);
+        let note = |tried: &TriedCovariate| {
+            let remedy = if tried.acts() {
+                "; the coefficients include what follows it, and `diagnose` subtracts it"
+            } else {
+                ""
+            };
+            format!("tried {}{remedy}", tried.words(self.axis.unit))
+        };
+        let columns = untold.iter().map(|tried| tried.channel.clone()).collect();
+        let hidden = (!untold.is_empty()).then(|| {
+            format!(
+                "whether the rate follows {} is told by `diagnose`, because this model hides it",
+                words::list_of(columns)
+            )
+        });
+        told.into_iter().map(note).chain(hidden).collect()
+    }
+}

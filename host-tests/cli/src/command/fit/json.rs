@@ -1,0 +1,147 @@
+//! The JSON document of a fit.
+
+use super::{
+    fitted::{Fitted, MethodName},
+    judged::Judged,
+};
+use crate::command::{
+    known_filter::{Shape, known_filter},
+    output::rounding,
+    tried::{self, TriedCovariate},
+};
+use allanite::{Coefficient, fit::State};
+use allanite_host::units;
+use allanite_log::unit::Unit;
+use serde::Serialize;
+
+/// The document of one file.
+#[derive(Serialize)]
+pub(crate) struct Document<'a> {
+    axes: Vec<Axis<'a>>,
+}
+
+#[derive(Serialize)]
+struct Axis<'a> {
+    axis: &'a str,
+    rate_hz: f64,
+    unit: Unit,
+    octaves: Vec<Octave>,
+    method: &'static str,
+    /// The filter that was given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    filter: Option<Shape>,
+    coefficients: Vec<Term>,
+    chi2: Option<f64>,
+    dof: Option<usize>,
+    p_value: Option<f64>,
+    /// Whether the five terms explain a valid curve; `null` if the record does not tell, or the method does not.
+    adequate: Option<bool>,
+    /// The factor by which intervals and bounds are widened.
+    birge_ratio: f64,
+    /// Why the curve is not valid; `null` if it is, or if the input is a curve file.
+    invalid: Option<&'a str>,
+    /// The covariates that were tried.
+    covariates: Vec<tried::Document>,
+    /// What the limits that were asked for say.
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    limits: &'a [Judged],
+    notes: Vec<String>,
+}
+
+#[derive(Serialize)]
+struct Octave {
+    m: u32,
+    tau_s: f64,
+    differences: u64,
+    variance: f64,
+}
+
+/// A coefficient in a unit that follows from the log's; infinite ends of an interval are `null`.
+#[derive(Serialize)]
+pub(crate) struct Term {
+    effect: &'static str,
+    symbol: &'static str,
+    value: f64,
+    lower: f64,
+    upper: f64,
+    state: &'static str,
+    unit: String,
+}
+
+/// The document of the axes of one file.
+pub(crate) fn document(fitted: &[Fitted]) -> Document<'_> {
+    Document {
+        axes: fitted.iter().map(axis).collect(),
+    }
+}
+
+fn axis(fitted: &Fitted) -> Axis<'_> {
+    let Fitted {
+        axis,
+        curve,
+        model,
+        method,
+        fit,
+        invalid,
+        tried,
+        limits,
+    } = fitted;
+    let finite = |value: f64| value.is_finite().then_some(value);
+    Axis {
+        axis: &axis.axis,
+        rate_hz: axis.rate_hz,
+        unit: axis.unit,
+        octaves: curve
+            .points()
+            .iter()
+            .map(|point| Octave {
+                m: point.m,
+                tau_s: point.tau_s,
+                differences: point.differences,
+                variance: point.variance,
+            })
+            .collect(),
+        method: method.name(),
+        filter: known_filter(model).map(Shape::of),
+        coefficients: fit
+            .coefficients
+            .iter()
+            .map(|one| term(one, axis.unit))
+            .collect(),
+        chi2: finite(fit.chi_squared),
+        dof: finite(fit.chi_squared).map(|_| fit.degrees_of_freedom),
+        p_value: finite(fit.p_value),
+        adequate: match *method {
+            _ if !fitted.is_valid() => Some(false),
+            MethodName::Covariance => fit.is_adequate(),
+            _ => None,
+        },
+        birge_ratio: fit.birge_ratio,
+        invalid: invalid.as_deref(),
+        covariates: tried.iter().map(TriedCovariate::document).collect(),
+        limits,
+        notes: invalid
+            .iter()
+            .cloned()
+            .chain(rounding::note(axis, fit).filter(|_| invalid.is_none()))
+            .chain(fitted.covariate_notes())
+            .collect(),
+    }
+}
+
+/// One coefficient.
+pub(crate) fn term(coefficient: &Coefficient, unit: Unit) -> Term {
+    Term {
+        effect: coefficient.name,
+        symbol: coefficient.symbol,
+        value: coefficient.value,
+        lower: coefficient.lower,
+        upper: coefficient.upper,
+        state: match coefficient.state {
+            State::Measured => "measured",
+            State::UpperBound => "upper_bound",
+            State::NotObservable { .. } => "not_observable",
+        },
+        unit: units::unit(unit, coefficient.half_seconds),
+    }
+}

@@ -1,0 +1,114 @@
+//! A coefficient beside its limit, for a station that measures once and decides.
+
+use crate::command::limit::LimitArgument;
+use allanite::fit::Fit;
+use allanite_host::{number::number, units};
+use allanite_log::{failure::Failure, unit::Unit};
+use serde::Serialize;
+use std::sync::atomic::{AtomicU8, Ordering};
+
+/// What a limit says of an axis. The rule is that of `allanite::ieee_952::Limits`, which decides on a device: what is known to
+/// keep a limit passes, and what is known to exceed one fails (ISO 14253-1).
+#[derive(Clone, Copy, Serialize)]
+#[serde(rename_all = "snake_case")]
+enum Verdict {
+    /// The 95 % interval keeps the limit.
+    Pass,
+    /// The interval contains the limit, or the coefficient is not observable in this record.
+    GuardBand,
+    /// The five terms do not explain the curve, so that the interval says nothing about a limit.
+    Misfit,
+    /// The curve is not valid.
+    Invalid,
+    /// The interval lies above the limit.
+    Fail,
+}
+
+impl Verdict {
+    const fn words(self) -> &'static str {
+        match self {
+            Self::Pass => "pass",
+            Self::GuardBand => "guard band: a longer record may decide",
+            Self::Misfit => {
+                "not decided, because the five terms do not explain the record: see `diagnose`"
+            }
+            Self::Invalid => "not decided, because the curve is not valid",
+            Self::Fail => "fail",
+        }
+    }
+}
+
+/// A limit of an axis, and what it says.
+#[derive(Clone, Serialize)]
+pub(crate) struct Judged {
+    effect: &'static str,
+    symbol: &'static str,
+    most: f64,
+    unit: String,
+    verdict: Verdict,
+}
+
+impl Judged {
+    /// The fit of an axis, and whether its curve is valid, beside all limits.
+    ///
+    /// # Errors
+    /// When a limit is of an effect that is not fitted, or in a unit that its coefficient does not have.
+    pub(crate) fn all(
+        (fit, is_valid): (&Fit, bool),
+        unit: Unit,
+        limits: &[LimitArgument],
+    ) -> Result<Vec<Self>, Failure> {
+        let judged = limits.iter().map(|limit| {
+            let mut coefficients = fit.coefficients.iter();
+            let found = coefficients.find(|found| found.name == limit.name());
+            let found = found.ok_or_else(|| limit.of_another_model())?;
+            let most = limit.of_unit(unit)?.value;
+            let (lower, upper) = (found.lower, found.upper);
+            let verdict = match fit.is_adequate() {
+                _ if !is_valid => Verdict::Invalid,
+                Some(false) => Verdict::Misfit,
+                _ if lower > most => Verdict::Fail,
+                _ if upper <= most => Verdict::Pass,
+                _ => Verdict::GuardBand,
+            };
+            Ok(Self {
+                effect: found.name,
+                symbol: found.symbol,
+                most,
+                unit: units::unit(unit, found.half_seconds),
+                verdict,
+            })
+        });
+        judged.collect()
+    }
+
+    /// The limit and the verdict in one line.
+    pub(crate) fn words(&self) -> String {
+        let (symbol, most, unit) = (self.symbol, number(self.most), &self.unit);
+        format!("limit {symbol} ≤ {most} {unit}: {}", self.verdict.words())
+    }
+}
+
+/// The worst verdict of all axes of all files, for the exit status.
+#[derive(Default)]
+pub(crate) struct Worst(AtomicU8);
+
+impl Worst {
+    pub(crate) fn note(&self, judged: &[Judged]) {
+        for one in judged {
+            self.0.fetch_max(one.verdict as u8, Ordering::Relaxed);
+        }
+    }
+
+    /// # Errors
+    /// [`Failure::Limit`] if an axis does not pass.
+    pub(crate) fn end(&self) -> Result<(), Failure> {
+        let worst = self.0.load(Ordering::Relaxed);
+        if worst == Verdict::Pass as u8 {
+            return Ok(());
+        }
+        Err(Failure::Limit {
+            is_exceeded: worst == Verdict::Fail as u8,
+        })
+    }
+}

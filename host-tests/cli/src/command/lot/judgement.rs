@@ -1,0 +1,211 @@
+//! The judgement of a lot.
+
+use super::{
+    device::Device,
+    limited::{Limited, Rule},
+    unusual::{Drift, Drifts, Outlier, outliers, unit_of, worst_first},
+};
+use crate::command::decode;
+use allanite::diagnosis::Verdict;
+use allanite_host::{
+    confidence::share_is_at_most,
+    lot::{Decision, Measurement},
+};
+use allanite_log::unit::Unit;
+use serde::Serialize;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// A lot with all that its judgement follows from.
+pub(super) struct Judged<'a> {
+    pub(super) devices: &'a [Device],
+    /// The earlier results of these devices, by their identities.
+    pub(super) before: &'a BTreeMap<&'a str, &'a Device>,
+    pub(super) unit: Unit,
+    pub(super) rules: &'a [Rule],
+    pub(super) lot: &'a Lot,
+}
+
+/// The judgement of a lot. Coefficients are in the unit that is told beside them.
+#[derive(Serialize)]
+pub(super) struct Lot {
+    pub(super) devices: usize,
+    /// The largest probability that a device at its limit passes, or fails.
+    pub(super) risk: f64,
+    /// Devices by their worst coefficient.
+    pub(super) passed: usize,
+    pub(super) guarded: usize,
+    pub(super) failed: usize,
+    /// The share of devices that passed, and the ends of its 95 % interval (Clopper & Pearson 1934).
+    pub(super) yield_share: f64,
+    pub(super) yield_interval: [f64; 2],
+    pub(super) limits: Vec<Limited>,
+    pub(super) failures: Vec<Failing>,
+    /// Coefficients in a guard band: a longer record may decide. The text tells their number only.
+    pub(super) undecided: Vec<Undecided>,
+    /// Axes whose records are not valid. Nothing is decided of them, and they are left out of all that follows.
+    pub(super) invalid: Vec<Named>,
+    /// Axes that a diagnosis did not explain. Their intervals are wider for it.
+    pub(super) unexplained: Vec<Named>,
+    pub(super) outliers: Vec<Outlier>,
+    /// The number of devices of which there is an earlier certificate.
+    pub(super) compared: usize,
+    /// The number of coefficients of them that were compared.
+    pub(super) comparisons: usize,
+    /// The number of standard errors from which on a coefficient has drifted.
+    pub(super) drift_threshold: f64,
+    pub(super) drifted: Vec<Drift>,
+    /// How many devices have an effect that the five terms lack.
+    pub(super) found: BTreeMap<&'static str, usize>,
+}
+
+/// A device that failed a limit.
+#[derive(Serialize)]
+pub(super) struct Failing {
+    pub(super) device: String,
+    pub(super) axis: String,
+    pub(super) effect: &'static str,
+    pub(super) value: f64,
+    /// The 95 % interval.
+    pub(super) interval: [f64; 2],
+    pub(super) unit: String,
+}
+
+/// A coefficient of a device that its record does not decide.
+#[derive(Serialize)]
+pub(super) struct Undecided {
+    pub(super) device: String,
+    pub(super) axis: String,
+    pub(super) effect: &'static str,
+}
+
+/// An axis of a device.
+#[derive(Serialize)]
+pub(super) struct Named {
+    pub(super) device: String,
+    pub(super) axis: String,
+}
+
+impl Lot {
+    /// Judges devices by the rules of their limits at a risk, and compares them with their earlier certificates. Of several earlier ones of a
+    /// device the last one counts.
+    pub(super) fn new(
+        devices: &[Device],
+        earlier: &[Device],
+        unit: Unit,
+        rules: &[Rule],
+        risk: f64,
+    ) -> Self {
+        let worst = |device: &Device| {
+            let axes = 0..device.certificate.axes.len();
+            let decisions = axes.flat_map(|axis| {
+                rules.iter().map(move |rule| {
+                    let known = device.measurement((axis, rule.limit.effect.name()));
+                    rule.decision(axis, known)
+                })
+            });
+            // A certificate without axes says nothing.
+            decisions.max().unwrap_or(Decision::Guarded)
+        };
+        let decisions: Vec<Decision> = devices.iter().map(worst).collect();
+        let count = |wanted| decisions.iter().filter(|one| **one == wanted).count();
+        let (passed, all) = (count(Decision::Passed), devices.len());
+        let share = passed as f64 / all as f64;
+        let at_most = |share| share_is_at_most(share, all as u64, 0.975);
+        let drifts = Drifts::of(devices, earlier);
+        let rows = rules.iter().flat_map(|rule| {
+            (0..rule.axes()).map(move |axis| Limited::of(devices, unit, axis, rule))
+        });
+        Self {
+            devices: all,
+            risk,
+            passed,
+            guarded: count(Decision::Guarded),
+            failed: count(Decision::Failed),
+            yield_share: share,
+            // At either end lies half of the 5 %.
+            yield_interval: [1.0 - at_most(1.0 - share), at_most(share)],
+            limits: rows.collect(),
+            failures: failures(devices, rules),
+            undecided: undecided(devices, rules),
+            invalid: named(devices, |verdict| matches!(verdict, Verdict::Invalid(_))),
+            unexplained: named(devices, |verdict| {
+                matches!(verdict, Verdict::Unexplained | Verdict::Incomplete)
+            }),
+            outliers: outliers(devices),
+            compared: drifts.devices,
+            comparisons: drifts.comparisons,
+            drift_threshold: drifts.threshold,
+            drifted: drifts.drifted,
+            found: found(devices),
+        }
+    }
+}
+
+fn named(devices: &[Device], wanted: fn(Verdict) -> bool) -> Vec<Named> {
+    let axes = devices.iter().flat_map(|device| {
+        device.axes_with(wanted).map(|axis| Named {
+            device: device.id.clone(),
+            axis: decode::axis_name(axis),
+        })
+    });
+    axes.collect()
+}
+
+/// Devices beyond their limits, the farthest one first.
+fn failures(devices: &[Device], rules: &[Rule]) -> Vec<Failing> {
+    let mut failures: Vec<(f64, Failing)> = Vec::new();
+    for device in devices {
+        for ((axis, effect), term) in device.terms() {
+            let rule = rules.iter().find(|rule| rule.limit.effect.name() == effect);
+            let Some((rule, known)) = rule.zip(Measurement::of(term)) else {
+                continue;
+            };
+            if rule.decision(axis, Some(known)) == Decision::Failed {
+                let failing = Failing {
+                    device: device.id.clone(),
+                    axis: decode::axis_name(axis),
+                    effect,
+                    value: known.value(),
+                    interval: [known.lower(), known.upper()],
+                    unit: unit_of(term, device.unit),
+                };
+                failures.push((known.value() / rule.limit.value, failing));
+            }
+        }
+    }
+    worst_first(failures)
+}
+
+fn undecided(devices: &[Device], rules: &[Rule]) -> Vec<Undecided> {
+    let mut undecided = Vec::new();
+    for device in devices {
+        for axis in 0..device.certificate.axes.len() {
+            for rule in rules {
+                let effect = rule.limit.effect.name();
+                let known = device.measurement((axis, effect));
+                if rule.decision(axis, known) == Decision::Guarded {
+                    undecided.push(Undecided {
+                        device: device.id.clone(),
+                        axis: decode::axis_name(axis),
+                        effect,
+                    });
+                }
+            }
+        }
+    }
+    undecided
+}
+
+fn found(devices: &[Device]) -> BTreeMap<&'static str, usize> {
+    let mut found = BTreeMap::new();
+    for device in devices {
+        let axes = device.certificate.axes.iter();
+        let names: BTreeSet<&str> = axes
+            .flat_map(|axis| axis.found().map(|term| term.effect.name()))
+            .collect();
+        for name in names {
+            *found.entry(name).or_default() += 1;
+        }
+    }
+    found
+}

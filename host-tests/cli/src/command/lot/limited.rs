@@ -1,0 +1,137 @@
+//! A coefficient of a lot beside its limit.
+
+use super::device::Device;
+use crate::command::{decode, limit::Limit};
+use allanite_host::{
+    lot::{Capability, Decision, ErrorModel, Measurement, Sample, acceptance_limit},
+    units,
+};
+use allanite_log::unit::Unit;
+use serde::Serialize;
+
+/// The shares of devices below the percentiles that are told.
+const SHARES: [f64; 3] = [0.05, 0.5, 0.95];
+
+/// A coefficient of one axis beside its limit. Numbers are in the unit that is told.
+#[derive(Serialize)]
+pub(super) struct Limited {
+    pub(super) axis: String,
+    pub(super) effect: &'static str,
+    pub(super) unit: String,
+    pub(super) limit: f64,
+    /// A device passes whose value is at most this, if its uncertainty is usual for the lot. `None` if the devices are too
+    /// few to tell, or if none would pass.
+    pub(super) accepted_up_to: Option<f64>,
+    /// The limit less that value.
+    pub(super) guard_band: Option<f64>,
+    pub(super) passed: usize,
+    pub(super) guarded: usize,
+    pub(super) failed: usize,
+    /// How many of those that passed are expected to be above the limit, by their own uncertainties.
+    pub(super) expected_false_passes: f64,
+    /// How many of those that failed are expected to be within the limit.
+    pub(super) expected_false_failures: f64,
+    /// The number of devices in which it is measured, of which the rest tells.
+    pub(super) measured: usize,
+    /// Percentiles: 5, 50 and 95 %.
+    pub(super) percentiles: Option<[f64; 3]>,
+    pub(super) cpk: Option<f64>,
+    /// Its 95 % interval.
+    pub(super) cpk_interval: Option<[f64; 2]>,
+}
+
+/// How a limit is applied to the devices of a lot.
+pub(super) struct Rule {
+    pub(super) limit: Limit,
+    /// For each axis, the error of the square of a device at the limit; zero if the lot does not tell it.
+    errors: Vec<f64>,
+    risk: f64,
+}
+
+impl Rule {
+    /// The rule for a limit of these devices.
+    pub(super) fn of(devices: &[Device], limit: Limit, risk: f64) -> Self {
+        let axes = devices.iter().map(|device| device.certificate.axes.len());
+        let errors = (0..axes.max().unwrap_or(0)).map(|axis| {
+            let place = (axis, limit.effect.name());
+            let known = devices.iter().filter_map(|one| one.measurement(place));
+            let model = ErrorModel::of(&known.collect::<Vec<_>>());
+            model.map_or(0.0, |model| model.error(limit.value * limit.value))
+        });
+        Self {
+            limit,
+            errors: errors.collect(),
+            risk,
+        }
+    }
+
+    /// The number of axes of the lot.
+    pub(super) fn axes(&self) -> usize {
+        self.errors.len()
+    }
+
+    /// The error of the square of a device at the limit.
+    fn error(&self, axis: usize) -> f64 {
+        self.errors.get(axis).copied().unwrap_or(0.0)
+    }
+
+    /// The probability that a coefficient of which this is known keeps the limit.
+    pub(super) fn conformity(&self, axis: usize, known: Option<Measurement>) -> Option<f64> {
+        known.map(|one| one.conformity(self.limit.value, self.error(axis)))
+    }
+
+    /// What is decided of a coefficient of which this is known. A certificate without the coefficient decides nothing.
+    pub(super) fn decision(&self, axis: usize, known: Option<Measurement>) -> Decision {
+        known.map_or(Decision::Guarded, |one| {
+            one.decision(self.limit.value, self.error(axis), self.risk)
+        })
+    }
+}
+
+impl Limited {
+    /// The devices that have this axis beside a limit.
+    pub(super) fn of(devices: &[Device], unit: Unit, axis: usize, rule: &Rule) -> Self {
+        let (limit, error) = (rule.limit, rule.error(axis));
+        let place = (axis, limit.effect.name());
+        let with_axis = devices
+            .iter()
+            .filter(|device| device.certificate.axes.len() > axis);
+        let known: Vec<Option<Measurement>> =
+            with_axis.map(|device| device.measurement(place)).collect();
+        let decided: Vec<(Decision, f64)> = known
+            .iter()
+            .map(|one| {
+                let conformity = one.map_or(0.5, |one| one.conformity(limit.value, error));
+                (rule.decision(axis, *one), conformity)
+            })
+            .collect();
+        let with = |wanted| decided.iter().filter(move |(one, _)| *one == wanted);
+        let measured = || known.iter().flatten().filter(|one| one.is_measured);
+        let values = Sample::of(measured().map(Measurement::value));
+        let accepted = (error > 0.0).then(|| acceptance_limit(limit.value, error, rule.risk));
+        let accepted = accepted.flatten();
+        let capability = Capability::of(&values, limit.value);
+        Self {
+            axis: decode::axis_name(axis),
+            effect: limit.effect.name(),
+            unit: units::unit(unit, limit.effect.half_seconds()),
+            limit: limit.value,
+            accepted_up_to: accepted,
+            guard_band: accepted.map(|accepted| limit.value - accepted),
+            passed: with(Decision::Passed).count(),
+            guarded: with(Decision::Guarded).count(),
+            failed: with(Decision::Failed).count(),
+            expected_false_passes: with(Decision::Passed).map(|(_, within)| 1.0 - within).sum(),
+            expected_false_failures: with(Decision::Failed).map(|(_, within)| within).sum(),
+            measured: values.values().len(),
+            percentiles: percentiles(&values),
+            cpk: capability.map(|one| one.value),
+            cpk_interval: capability.map(|one| one.interval),
+        }
+    }
+}
+
+fn percentiles(values: &Sample) -> Option<[f64; 3]> {
+    let [low, median, high] = SHARES.map(|share| values.quantile(share));
+    Some([low?, median?, high?])
+}

@@ -1,0 +1,131 @@
+//! The parts that the JSON documents of `compare` and `diagnose` share.
+
+use crate::command::fit;
+use allanite::{
+    Comparison, Model, Term,
+    comparison::ComparedOctave,
+    covariate::{self, Slope},
+    detection::Range,
+    fit::Fit,
+};
+use allanite_host::{
+    dependence::candidates::{Candidate, Form},
+    units, words,
+};
+use allanite_log::{BINS, OCTAVES, unit::Unit};
+use serde::Serialize;
+use serde_json::{Map, Value};
+
+/// An effect of a model, with its shape and its coefficient.
+#[derive(Serialize)]
+pub(crate) struct Effect {
+    name: &'static str,
+    parameters: Map<String, Value>,
+    /// The column of a covariate; other effects have none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    channel: Option<String>,
+}
+
+/// A covariate that the rate depends on: its slope, and its lag if it has one, each with its 95 % interval.
+pub(crate) fn covariate(slope: &Slope, series: &Candidate) -> Effect {
+    let (lower, upper) = slope.interval();
+    let numbers = [
+        ("slope", slope.value),
+        ("slope_lower", lower),
+        ("slope_upper", upper),
+    ];
+    let (lag, channel) = match &series.form {
+        Form::Behind(lag) => {
+            let lag = vec![
+                ("lag_s", lag.lag_s),
+                ("lag_lower_s", lag.lower_s),
+                ("lag_upper_s", lag.upper_s),
+            ];
+            (lag, &series.column)
+        }
+        _ => (Vec::new(), &series.name),
+    };
+    let numbers = numbers.into_iter().chain(lag);
+    Effect {
+        name: covariate::NAME,
+        parameters: numbers.map(|(name, x)| (name.into(), x.into())).collect(),
+        channel: Some(channel.clone()),
+    }
+}
+
+/// The octave with the largest disagreement.
+#[derive(Serialize)]
+pub(crate) struct Worst {
+    tau_s: f64,
+    z: f64,
+    percent: f64,
+}
+
+/// The size of an effect that a record would have shown, over a range of shapes.
+#[derive(Serialize)]
+pub(crate) struct DetectionRange {
+    effect: &'static str,
+    /// The name of the number that is limited: the coefficient or, for a filter, a shape parameter.
+    limited: &'static str,
+    limit: f64,
+    unit: String,
+    /// The ends of the range of the first shape parameter, by its name.
+    #[serde(flatten)]
+    ends: Map<String, Value>,
+}
+
+/// The limit of detection of a range of shapes.
+pub(crate) fn detection_range(range: &Range, unit: Unit) -> DetectionRange {
+    let effect = range.effect;
+    let parameter = effect.parameters().first();
+    let limited = parameter.filter(|_| range.is_of_shape);
+    let (low, high) = range.ends;
+    let ends = parameter.filter(|_| !range.is_of_shape);
+    let ends = ends.map(|parameter| (parameter.name.to_owned(), Value::from(vec![low, high])));
+    DetectionRange {
+        effect: effect.name(),
+        limited: limited.map_or(effect.coefficient(), |parameter| parameter.name),
+        limit: range.size,
+        unit: match limited {
+            Some(parameter) => parameter.unit.to_owned(),
+            None => units::unit(unit, effect.half_seconds()),
+        },
+        ends: ends.into_iter().collect(),
+    }
+}
+
+/// The shape and the coefficient of a term by name; numbers that are not finite are `null`.
+pub(crate) fn parameters(term: &Term, coefficient: f64) -> Map<String, Value> {
+    words::parameters(term, Some(coefficient))
+        .into_iter()
+        .map(|(name, value)| (name.to_owned(), Value::from(value)))
+        .collect()
+}
+
+/// The effects of a model.
+pub(crate) fn effects(model: &Model, fit: &Fit) -> Vec<Effect> {
+    let terms = model.terms().iter().zip(&fit.coefficients);
+    terms
+        .map(|(term, coefficient)| Effect {
+            name: term.effect.name(),
+            parameters: parameters(term, coefficient.value),
+            channel: None,
+        })
+        .collect()
+}
+
+/// The coefficients, as `fit --json` prints them.
+pub(crate) fn coefficients(fit: &Fit, unit: Unit) -> Vec<fit::json::Term> {
+    let coefficients = fit.coefficients.iter();
+    coefficients.map(|one| fit::json::term(one, unit)).collect()
+}
+
+/// The worst octave of a comparison.
+pub(crate) fn worst(comparison: &Comparison<OCTAVES, BINS>) -> Option<Worst> {
+    let worst = |octave: &ComparedOctave| Worst {
+        tau_s: octave.tau_s,
+        z: octave.z,
+        percent: octave.percent(),
+    };
+    comparison.worst().map(worst)
+}

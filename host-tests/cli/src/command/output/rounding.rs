@@ -1,0 +1,56 @@
+//! What rounding to whole counts does to the coefficients of a fit.
+
+use allanite::{
+    effect::{AngleRandomWalk, Effect},
+    fit::{Fit, State},
+    integrity::Limits,
+};
+use allanite_host::{curve_file::AxisCurve, number::number, words};
+
+/// The smallest excess of angle random walk that is worth a note, in percent. Chosen by hand: rounding
+/// exceeds it at a noise of two counts rms or less.
+const LEAST_PERCENT: f64 = 1.0;
+
+/// Whether the noise is below half a count. The result of a fit then follows from the constant offset.
+pub(crate) fn is_coarse(axis: &AxisCurve) -> bool {
+    coarse_per_mille(axis).is_some()
+}
+
+/// The mean square of the differences of neighbours in thousandths of a count², if it is so small that the noise is below
+/// half a count.
+pub(crate) fn coarse_per_mille(axis: &AxisCurve) -> Option<u16> {
+    let square = axis.rate_per_count * axis.rate_per_count;
+    // A difference of neighbours has twice their Allan variance.
+    let first = axis.octaves.first().filter(|octave| octave.m == 1)?;
+    let per_mille = 1000.0 * 2.0 * first.variance / square;
+    let is_coarse = per_mille < f64::from(Limits::DEFAULT.difference_per_mille);
+    is_coarse.then_some(per_mille as u16)
+}
+
+/// A note on the share of rounding in an axis, or `None` if there is nothing to tell.
+///
+/// Rounding to whole counts adds white noise of 1/12 count² to a noise of half a count rms or more
+/// (Widrow & Kollár 2008, chapter 4). Below that, the result of the fit follows from the constant offset.
+pub(crate) fn note(axis: &AxisCurve, fit: &Fit) -> Option<String> {
+    let square = axis.rate_per_count * axis.rate_per_count;
+    if is_coarse(axis) {
+        return Some(
+            "the noise is below half a count, so that the coefficients follow from the constant \
+             offset: use a finer range"
+                .into(),
+        );
+    }
+    let name = AngleRandomWalk.description().name;
+    let mut coefficients = fit.coefficients.iter();
+    let white = coefficients.find(|one| one.name == name && one.state == State::Measured)?;
+    let without = white.value * white.value - square / (12.0 * axis.rate_hz);
+    let percent = 100.0 * (white.value / without.max(0.0).sqrt() - 1.0);
+    if percent < LEAST_PERCENT || !percent.is_finite() {
+        return None;
+    }
+    let (factor, unit) = words::customary(axis.unit, white.half_seconds);
+    Some(format!(
+        "rounding to whole counts raises angle random walk by {percent:.0} %: without it, it is {} {unit}",
+        number(factor * without.sqrt())
+    ))
+}

@@ -1,0 +1,54 @@
+//! Writes the text of a table with the reader of its format.
+
+use super::{ardupilot, arrow, betaflight, hdf5, matlab, workbook, wrong::Wrong};
+use crate::{
+    converted::Text,
+    failure::{Failure, Place, one_line},
+    source::TableKind as Kind,
+};
+use std::{
+    fs::File,
+    panic::{self, AssertUnwindSafe},
+    path::Path,
+};
+
+/// The remedy of a damaged file.
+const COPY: &str = "copy or record the file again";
+
+/// Writes the text of a table to a file, and returns a note about the table.
+pub(super) fn rewrite(
+    path: &Path,
+    kind: Kind,
+    topic: Option<&str>,
+    text: &Path,
+) -> Result<Option<String>, Failure> {
+    let here = || Place::file(path);
+    let size = path.metadata().map_or(0, |file| file.len());
+    let file = File::create(text).map_err(|error| here().io(&error))?;
+    let mut text = Text::to(path, size, file);
+    let convert = || match kind {
+        Kind::Ardupilot => ardupilot::convert(path, topic, &mut text),
+        Kind::Arrow | Kind::Parquet => arrow::convert(path, kind, topic, &mut text),
+        Kind::Betaflight => betaflight::convert(path, topic, &mut text),
+        Kind::Hdf5 => hdf5::convert(path, topic, &mut text),
+        Kind::Matlab => matlab::convert(path, topic, &mut text),
+        Kind::Workbook => workbook::convert(path, topic, &mut text),
+    };
+    let converted = quietly(convert);
+    let note = converted.map_err(|wrong| match wrong {
+        Wrong::Io(error) => text.failure(&error),
+        Wrong::Damaged(what) => here().failure(format!("damaged: {}", one_line(&what)), COPY),
+        Wrong::Unfit(what, remedy) => here().failure(what, remedy),
+    })?;
+    text.finish()?;
+    Ok(note)
+}
+
+/// Runs a reader of another project. Some of them panic at damaged files, which is reported like any other damage.
+fn quietly<T>(read: impl FnOnce() -> Result<T, Wrong>) -> Result<T, Wrong> {
+    let hook = panic::take_hook();
+    panic::set_hook(Box::new(|_| {}));
+    let read = panic::catch_unwind(AssertUnwindSafe(read));
+    panic::set_hook(hook);
+    read.unwrap_or_else(|_| Err(Wrong::damaged("its parts contradict each other")))
+}

@@ -1,0 +1,87 @@
+//! Temperatures that the rate depends on.
+
+use allanite_host::simulate::Preset;
+use allanite_studies::{
+    lag::{self, Course, Dependence},
+    thermal,
+};
+
+/// Temperatures whose course, noise and lag are drawn at random, with seeds from 0 on.
+pub(crate) fn print_drawn(records: u64) {
+    println!(
+        "20 Hz, {records} records of 2^16 samples a line; lag 10 … 120 s, thermometer noise 0 … 0.2 K, steps of 0.1 K in half of them"
+    );
+    println!(
+        "{:<6} {:<10} {:<9} {:>6} {:>7} {:>7} {:>7} {:>13} {:>11} {:>13}",
+        "preset",
+        "course",
+        "follows",
+        "found",
+        "lagged",
+        "rate",
+        "square",
+        "slope inside",
+        "lag inside",
+        "wrong effect"
+    );
+    for preset in [Preset::Mems, Preset::Fog] {
+        for dependence in [
+            Dependence::Lagged,
+            Dependence::AtOnce,
+            Dependence::Square,
+            Dependence::None,
+        ] {
+            for course in Course::ALL {
+                let tally = lag::study(preset, course, dependence, records);
+                println!(
+                    "{:<6} {:<10} {:<9} {:>6} {:>7} {:>7} {:>7} {:>13} {:>11} {:>13}",
+                    format!("{preset:?}"),
+                    format!("{course:?}"),
+                    format!("{dependence:?}"),
+                    tally.found,
+                    tally.lagged,
+                    tally.rate_of_change,
+                    tally.square,
+                    tally.slope_inside,
+                    tally.lag_inside,
+                    tally.wrong
+                );
+            }
+        }
+    }
+}
+
+pub(crate) fn print(records: u64) {
+    println!("mems at 20 Hz, {records} records of 2^16 samples, 0.01 deg/s per kelvin");
+    println!(
+        "{:<20} {:>6} {:>12} {:>9} {:>9} {:>11} {:>17} {:>13}",
+        "course",
+        "found",
+        "mean slope",
+        "coverage",
+        "scatter",
+        "error",
+        "over the bound",
+        "wrongly blamed"
+    );
+    for (name, course, kelvin, bound) in thermal::CASES {
+        let t = thermal::study(course, kelvin, records);
+        println!(
+            "{name:<20} {:>4.1} % {:>10.3}   {:>7.1} % {:>9.5} {:>11.5} {:>17.2} {:>11.2} %",
+            100.0 * t.found,
+            t.mean,
+            100.0 * t.coverage,
+            t.deviation,
+            t.error,
+            t.error / bound,
+            100.0 * t.blamed
+        );
+    }
+    println!(
+        "\nwith strong Gauss–Markov noise (T_c 1 s) and ten times the slope; share with both found:"
+    );
+    for (name, course, kelvin, _) in thermal::CASES {
+        let share = thermal::with_gauss_markov(course, kelvin, records.min(200));
+        println!("{name:<20} {:.1} %", 100.0 * share);
+    }
+}

@@ -1,0 +1,163 @@
+//! Tests what `diagnose` says of a rate that follows a temperature with a lag, and of its record over time.
+
+use allanite_host::simulate::{Preset, Random, Simulator};
+use program::{json, output};
+use rand::{RngExt, SeedableRng};
+use rand_distr::StandardNormal;
+use serde_json::Value;
+use std::{f64::consts::PI, fmt::Write, fs, path::Path};
+use tempfile::TempDir;
+
+const RATE_HZ: f64 = 20.0;
+const SAMPLES: usize = 1 << 15;
+
+/// A thermometer and a gyro that follows it.
+#[derive(Clone, Copy)]
+struct Record {
+    /// The temperature in kelvin above that of the room, at a time in seconds.
+    temperature: fn(f64) -> f64,
+    slope: f64,
+    lag_s: f64,
+    /// White noise of the thermometer, in kelvin.
+    noise: f64,
+    seed: u64,
+}
+
+impl Record {
+    /// Writes the log of a consumer gyro.
+    fn write(&self, folder: &Path) {
+        let mut simulator = Simulator::new(Preset::Mems.coefficients(), RATE_HZ, self.seed);
+        let mut random = Random::seed_from_u64(self.seed);
+        let mut text = "# rate_hz=20\n# unit=deg/s\ngyro_z,temp_C\n".to_owned();
+        let mut behind = (self.temperature)(0.0);
+        for n in 0..SAMPLES {
+            let celsius = (self.temperature)(n as f64 / RATE_HZ);
+            behind += (celsius - behind) / (self.lag_s * RATE_HZ).max(1.0);
+            let rate = simulator.next().unwrap() + self.slope * behind;
+            let told = 25.0 + celsius + self.noise * random.sample::<f64, _>(StandardNormal);
+            writeln!(text, "{rate:.7},{told:.3}").unwrap();
+        }
+        fs::write(folder.join("log.csv"), text).unwrap();
+    }
+
+    fn diagnosed(&self, folder: &Path) -> Value {
+        self.write(folder);
+        json(folder, &["diagnose", "log.csv", "--covariates", "temp_C"])["axes"][0].clone()
+    }
+}
+
+/// A sinusoid of 400 s and one of 1100 s.
+fn cycles(t: f64) -> f64 {
+    2.0 * (2.0 * PI * t / 400.0).sin() + 1.5 * (2.0 * PI * t / 1100.0).sin()
+}
+
+fn number(value: &Value, name: &str) -> f64 {
+    value[name].as_f64().unwrap()
+}
+
+#[test]
+fn a_lag_is_told_with_its_interval_and_no_sinusoid_takes_its_place() {
+    let folder = TempDir::new().unwrap();
+    let mut covered = 0;
+    for seed in 0..8 {
+        let record = Record {
+            temperature: cycles,
+            slope: 0.02,
+            lag_s: 30.0,
+            noise: 0.05,
+            seed,
+        };
+        let axis = record.diagnosed(folder.path());
+        assert_eq!(axis["missing"], serde_json::json!(["covariate"]), "{seed}");
+        let tried = &axis["covariates"][0];
+        let ends = |name: &str| ["lower", "upper"].map(|end| name.replace('*', end));
+        let [low, high] = ends("lag_*_s").map(|name| number(tried, &name));
+        let [least, most] = ends("slope_*").map(|name| number(tried, &name));
+        println!("{seed}: lag {low:.1} … {high:.1} s, slope {least:.5} … {most:.5}");
+        assert!((number(tried, "lag_s") - 30.0).abs() < 8.0, "{tried}");
+        assert!((number(tried, "slope") - 0.02).abs() < 0.002, "{tried}");
+        assert!(high - low < 25.0 && most - least < 0.006, "{tried}");
+        let is_covered = (low..high).contains(&30.0) && (least..most).contains(&0.02);
+        covered += u32::from(is_covered);
+    }
+    assert!(covered >= 6, "{covered} of 8");
+    let text = output(
+        folder.path(),
+        &["diagnose", "log.csv", "--covariates", "temp_C"],
+    );
+    assert!(
+        text.contains("tried temp_C: the rate follows it with a lag of ")
+            && text.contains("deg/s per K ("),
+        "{text}"
+    );
+    assert!(
+        text.contains("missing effect: covariate temp_C behind a lag of "),
+        "{text}"
+    );
+}
+
+#[test]
+fn a_bound_on_a_dependence_holds_for_any_lag() {
+    let folder = TempDir::new().unwrap();
+    let record = Record {
+        temperature: |t| 2.0 * (2.0 * PI * t / 300.0).sin(),
+        slope: 0.0,
+        lag_s: 0.0,
+        noise: 0.1,
+        seed: 3,
+    };
+    let axis = record.diagnosed(folder.path());
+    let tried = &axis["covariates"][0];
+    let most = number(tried, "most");
+    // With a lag of a quarter period, a slope as large as the bound would show.
+    let one = ["slope_lower", "slope_upper"].map(|end| number(tried, end).abs());
+    assert!(most >= one[0].max(one[1]), "{tried}");
+    let text = output(
+        folder.path(),
+        &["diagnose", "log.csv", "--covariates", "temp_C"],
+    );
+    let sentence = text
+        .lines()
+        .find(|line| line.contains("tried temp_C"))
+        .unwrap();
+    assert!(
+        sentence.contains("with a lag or without, at its main period of "),
+        "{sentence}"
+    );
+    let period = sentence.split("main period of ").nth(1).unwrap();
+    let period: f64 = period.trim_end_matches(" s").parse().unwrap();
+    assert!((period - 300.0).abs() < 30.0, "{sentence}");
+    // Twice the bound, a quarter of a period late, is found.
+    let lagged = Record {
+        temperature: |t| {
+            2.0 * (2.0 * PI * (t + 75.0) / 300.0).sin() + 0.3 * (2.0 * PI * t / 900.0).sin()
+        },
+        slope: 10.0 * most,
+        lag_s: 200.0,
+        ..record
+    };
+    let axis = lagged.diagnosed(folder.path());
+    let tried = axis["covariates"].as_array().unwrap();
+    assert!(tried.iter().any(|tried| tried["acts"] == true), "{tried:?}");
+}
+
+/// A warm-up that the temperature explains is no event, whether the rate follows it at once or late.
+#[test]
+fn a_record_is_stationary_beside_what_follows_the_temperature() {
+    let folder = TempDir::new().unwrap();
+    for lag_s in [0.0, 40.0] {
+        let record = Record {
+            temperature: |t| -10.0 * (-t / 200.0).exp_m1(),
+            slope: 0.02,
+            lag_s,
+            noise: 0.02,
+            seed: 11,
+        };
+        let axis = record.diagnosed(folder.path());
+        assert_eq!(axis["missing"], serde_json::json!(["covariate"]), "{lag_s}");
+        assert_eq!(axis["events"], serde_json::json!([]), "{lag_s}");
+        assert_eq!(axis["verdict"], "improved", "{lag_s}");
+        let blind = json(folder.path(), &["diagnose", "log.csv", "--no-covariates"]);
+        assert_eq!(blind["axes"][0]["verdict"], "not_stationary", "{lag_s}");
+    }
+}

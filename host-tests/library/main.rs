@@ -8,6 +8,7 @@ mod curve;
 #[cfg(feature = "flash")]
 mod flash;
 mod octave;
+mod python_effects;
 mod queue;
 #[cfg(feature = "async")]
 mod sensor;

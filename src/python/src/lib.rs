@@ -8,6 +8,7 @@ mod accumulator;
 mod arrays;
 mod comparison;
 mod diagnosis;
+mod effect;
 mod error;
 mod own;
 mod pieces;
@@ -26,6 +27,8 @@ mod _native {
     use super::comparison::Comparison;
     #[pymodule_export]
     use super::diagnosis::Diagnosis;
+    #[pymodule_export]
+    use super::effect::check_effect;
     #[pymodule_export]
     use super::own::OwnEffect;
     #[pymodule_export]

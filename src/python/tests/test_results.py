@@ -82,7 +82,7 @@ def test_every_effect_of_the_catalogue_can_be_added(record):
 def test_shapes_are_written_as_on_the_command_line():
     assert allanite.Sinusoid(47).written() == "sinusoid:frequency_hz~47.0"
     assert allanite.Sinusoid(47, fitted=False).written() == "sinusoid:frequency_hz=47.0"
-    assert allanite.LowPass(42, 2, fitted=False).written() == "low_pass:cutoff_hz=42.0,poles=2"
+    assert allanite.LowPass(cutoff_hz=42, poles=2, fitted=False).written() == "low_pass:cutoff_hz=42.0,poles=2"
     assert allanite.Sinusoid().written() == "sinusoid"
 
 

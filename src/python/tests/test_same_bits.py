@@ -1,5 +1,6 @@
 """Python tells the same as the command line, to the bit."""
 
+import dataclasses
 import json
 import subprocess
 
@@ -107,6 +108,39 @@ def test_models_are_those_of_compare(hidden):
     model = package.read(hidden).fit().model + package.Sinusoid(7.7, fitted=False) - "rate_ramp"
     expected = document("compare", hidden, "--with", "sinusoid:frequency_hz=7.7", "--without", "rate_ramp")
     assert model.to_dict() == expected
+
+
+@pytest.mark.parametrize(
+    ("effect", "begun", "known"),
+    [
+        (
+            package.DigitalLowPass(cutoff_hz=42, poles=4),
+            "digital_low_pass:cutoff_hz~42,poles=4",
+            "digital_low_pass:cutoff_hz=42,poles=4",
+        ),
+        (
+            package.OutputLowPass(cutoff_hz=17.3, poles=3),
+            "output_low_pass:cutoff_hz~17.3,poles=3",
+            "output_low_pass:cutoff_hz=17.3,poles=3",
+        ),
+        (package.Cascade(cutoff_hz=9.7, stages=3), "cascade:cutoff_hz~9.7,stages=3", "cascade:cutoff_hz=9.7,stages=3"),
+        (package.HighPass(cutoff_hz=0.3), "high_pass:cutoff_hz~0.3", "high_pass:cutoff_hz=0.3"),
+        (
+            package.LowPass(time_constant_s=0.0037, poles=4),
+            "low_pass:time_constant_s~0.0037,poles=4",
+            "low_pass:time_constant_s=0.0037,poles=4",
+        ),
+    ],
+    ids=lambda one: getattr(one, "NAME", ""),
+)
+def test_filters_are_those_of_compare_and_diagnose(effect, begun, known, hidden):
+    record = package.read(hidden)
+    five = record.fit().model
+    assert (five + effect).to_dict() == document("compare", hidden, "--with", begun)
+    fixed = dataclasses.replace(effect, fitted=False)
+    assert (five + fixed).to_dict() == document("compare", hidden, "--with", known)
+    expected = document("diagnose", hidden, "--max-effects", 1, "--filter", known)
+    assert record.diagnose(max_effects=1, filter=effect).to_dict() == expected
 
 
 def test_pictures_are_those_of_plot(hidden, tmp_path):

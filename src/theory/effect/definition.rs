@@ -79,6 +79,40 @@ pub struct Parameter {
     pub reciprocal: Option<Reciprocal>,
 }
 
+/// The values that a shape parameter may have.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Domain {
+    /// Every number above zero.
+    Positive,
+    /// The whole numbers from `low` to `high`.
+    Whole {
+        /// The least one, which a parameter has unless it is given.
+        low: Real,
+        /// The greatest one.
+        high: Real,
+    },
+}
+
+impl Parameter {
+    /// The values that the parameter may have: of one that takes whole numbers only, those that a search tries.
+    pub fn domain(&self) -> Domain {
+        /// Any span will do: the range of a whole number does not depend on it.
+        const ANY: Span = Span {
+            interval_s: 1.0,
+            longest_tau_s: 1.0,
+        };
+        if !self.is_whole {
+            return Domain::Positive;
+        }
+        let range = (self.search_range)(&ANY);
+        Domain::Whole {
+            low: range.low,
+            high: range.high,
+        }
+    }
+}
+
 /// A quantity that is inversely proportional to a parameter, such as the cut-off frequency of a filter with a
 /// time constant. Data sheets give the one, formulas the other.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -9,8 +9,9 @@
 //! A new effect takes one file in this folder and one line in the catalogue below. The file
 //! defines the type, its [`Effect`], its [`Explain`] and a static `DESCRIPTION`. If the rate is a stationary
 //! process that the shape determines, such as white noise behind a filter, the file names the process in the
-//! place of the [`Effect`]. A firmware can define an effect of its own, in any file, and add it to the list that
-//! it gives to [`Diagnosis`](crate::diagnosis::Diagnosis).
+//! place of the [`Effect`]. The package for Python has a class of it, which
+//! `ALLANITE_RENEW_PYTHON=1 cargo test --test library python_effects` makes. A firmware can define an effect of its own, in any
+//! file, and add it to the list that it gives to [`Diagnosis`](crate::diagnosis::Diagnosis).
 
 mod behind;
 mod check;
@@ -28,7 +29,8 @@ pub use crate::{limits::MAX_PARAMETERS, theory::lattice::SecondDifferences};
 pub use behind::Behind;
 pub use check::{Flaw, check};
 pub use definition::{
-    Decay, Description, Distribution, Effect, FIRST_OWN_CODE, Parameter, Reciprocal, Response, Tail,
+    Decay, Description, Distribution, Domain, Effect, FIRST_OWN_CODE, Parameter, Reciprocal,
+    Response, Tail,
 };
 pub use explanation::{Explain, Explanation};
 pub use sampled_shape::{SampledShape, padded};

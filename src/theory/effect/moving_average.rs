@@ -9,7 +9,7 @@ use crate::numerics::real::Real;
 
 /// A moving average of the whole output: quantization, flicker noise and random walks as well as the white noise are means
 /// over the last samples. The coefficient is the `N` of the angle random walk in front of it; the shape parameter is the
-/// number of samples of a mean, up to 64.
+/// number of samples of a mean, 2 to 32.
 ///
 /// The kernel is that of the white noise, which is a [`DecimationFilter`] of one stage. What the average leaves of the other
 /// terms follows from it ([`passes_all`](super::Effect::passes_all)).

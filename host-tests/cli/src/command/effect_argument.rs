@@ -2,7 +2,7 @@
 
 use allanite::{
     Term,
-    effect::{CATALOGUE, Effect, MAX_PARAMETERS, Parameter, Span},
+    effect::{CATALOGUE, Domain, Effect, MAX_PARAMETERS, Parameter},
 };
 use allanite_log::failure::{Failure, did_you_mean, quoted};
 
@@ -186,7 +186,7 @@ impl<'a> EffectArgument<'a> {
         let mut shape = [0.0; MAX_PARAMETERS];
         for (value, parameter) in shape.iter_mut().zip(parameters) {
             if self.values.iter().any(|(name, _)| *name == parameter.name) {
-                *value = self.whole(parameter)?;
+                *value = self.parameter(parameter)?;
             }
         }
         Ok(Shape::Fitted(shape))
@@ -219,20 +219,19 @@ impl<'a> EffectArgument<'a> {
         self.failure(what, &remedy)
     }
 
-    /// Takes a shape parameter that is a whole number, which is the least one unless given: one pole, two stages of a
-    /// cascade.
-    fn whole(&mut self, parameter: &Parameter) -> Result<f64, Failure> {
-        /// Any span will do: the range of a whole number does not depend on it.
-        const ANY: Span = Span {
-            interval_s: 1.0,
-            longest_tau_s: 1.0,
-        };
-        let range = (parameter.search_range)(&ANY);
-        let value = self.take(parameter.name).unwrap_or(range.low);
-        if value.fract() != 0.0 || !(range.low..=range.high).contains(&value) {
-            let remedy = format!("give a whole number, {} to {}", range.low, range.high);
-            let what = format!("{}={value} is impossible", parameter.name);
-            return Err(self.failure(what, &remedy));
+    /// Takes a shape parameter. A whole number is the least one unless given: one pole, two stages of a cascade.
+    fn parameter(&mut self, parameter: &Parameter) -> Result<f64, Failure> {
+        match parameter.domain() {
+            Domain::Whole { low, high } => self.whole(parameter.name, low, high),
+            Domain::Positive => self.value(parameter),
+        }
+    }
+
+    fn whole(&mut self, name: &'static str, low: f64, high: f64) -> Result<f64, Failure> {
+        let value = self.take(name).unwrap_or(low);
+        if value.fract() != 0.0 || !(low..=high).contains(&value) {
+            let remedy = format!("give a whole number, {low} to {high}");
+            return Err(self.failure(format!("{name}={value} is impossible"), &remedy));
         }
         Ok(value)
     }
@@ -248,11 +247,7 @@ impl<'a> EffectArgument<'a> {
         self.check_names(effect)?;
         let mut shape = [0.0; MAX_PARAMETERS];
         for (i, parameter) in effect.parameters().iter().enumerate() {
-            shape[i] = if parameter.is_whole {
-                self.whole(parameter)?
-            } else {
-                self.value(parameter)?
-            };
+            shape[i] = self.parameter(parameter)?;
         }
         Ok(shape)
     }

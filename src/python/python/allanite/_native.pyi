@@ -81,4 +81,8 @@ class Pieces:
     @staticmethod
     def record(axes: list[tuple[str, Pieces]], options: list[str]) -> Record: ...
 
-def deviations(columns: list[tuple[str, NDArray[Any]]], options: list[str], progress: _Progress) -> str: ...
+def deviations(columns: list[tuple[str, NDArray[Any]]], options: list[str], progress: _Progress) -> str:
+    """The document of deviations at octaves."""
+
+def check_effect(text: str, fitted: bool) -> None:
+    """Reads an effect as the command line does, and raises what it would refuse."""

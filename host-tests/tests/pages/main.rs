@@ -6,6 +6,7 @@
 mod commands;
 mod counts;
 mod files;
+#[cfg(unix)]
 mod hook;
 mod page;
 mod voice;

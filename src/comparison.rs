@@ -26,7 +26,7 @@ use heapless::Vec;
 /// convention: an octave of a true model exceeds it with a probability of 5 %.
 const NOTICEABLE: Real = 2.0;
 
-/// One octave of a measurement beside a model.
+/// One octave of a measurement and of a model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct ComparedOctave {
@@ -58,7 +58,7 @@ impl ComparedOctave {
     }
 }
 
-/// One bin of a measured density beside a model.
+/// One bin of a measured density and of a model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct ComparedBin {
@@ -83,7 +83,7 @@ pub struct Stretch {
     pub to_s: Real,
 }
 
-/// A measurement beside a model, octave by octave and as a whole.
+/// A measurement compared with a model, octave by octave and as a whole.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Comparison<const K: usize, const B: usize = 0> {
@@ -294,7 +294,7 @@ impl<const K: usize, const B: usize> core::fmt::Display for Comparison<K, B> {
     }
 }
 
-/// An octave that is not fitted beside a model that is.
+/// An octave that is not fitted, compared with a model that is.
 #[inline(never)]
 fn compare_short<const K: usize, const B: usize>(
     problem: &Problem<'_, K, B>,

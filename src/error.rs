@@ -99,7 +99,7 @@ pub enum Error {
     OtherTest,
     /// The fit is one of another model: the effects are not the same ones in the same order.
     OtherModel,
-    /// The normal equations have no solution. The model's effects cannot be told apart, or a column is
+    /// The normal equations have no solution. The model's effects cannot be distinguished, or a column is
     /// not finite.
     Singular,
 }

@@ -1,5 +1,10 @@
-//! Noise coefficients of a gyro, computed on its own microcontroller: from raw counts to an Allan curve, to a
-//! fit with honest intervals, and to the effect that is missing where the usual terms do not explain the record.
+//! Noise coefficients of a gyro, computed on its own microcontroller: from raw counts to the overlapping Allan
+//! deviation (NIST SP 1065) and the power spectral density (PSD, Welch), to a fit of the terms of IEEE Std 952 with
+//! confidence intervals, and to the effect that is missing where these terms do not explain the record.
+//!
+//! A data sheet's angle random walk (ARW) or rate noise density is the coefficient N, and its in-run bias stability is
+//! the minimum of the Allan deviation, 0.664 B where bias instability dominates it. Of an accelerometer, N is the
+//! velocity random walk (VRW).
 //!
 //! # Example
 //!
@@ -32,10 +37,10 @@
 //!
 //! * [`Axes`] keeps everything of a record of three axes behind one `push`, and [`Axis`] does so for one axis.
 //!   [`Accumulator`] is the least that makes a curve.
-//! * [`spectrum::Spectrum`] is the power spectral density of the same record, which tells a line from a resonance and
-//!   from a filter. A diagnosis takes it beside the curve.
+//! * [`spectrum::Spectrum`] is the one-sided power spectral density (PSD) of the same record by Welch's method. It
+//!   distinguishes a line from a resonance and from a filter. A diagnosis uses both.
 //! * [`Curve`] is the Allan curve: at most 30 points, an octave apart. Nothing behind it needs a sample again.
-//! * [`Record`] is everything that is kept of one axis: a curve, and the spectrum, the course and the other sums beside it.
+//! * [`Record`] holds all that is stored of one axis: the curve, the spectrum, the course (block history) and other sums.
 //! * [`Model`] is a list of effects, such as the five terms of IEEE Std 952.
 //! * [`fit::fit`] fits a model to a curve in one call. [`fit::Fitting`] does the same in pieces, for a main loop
 //!   that has to feed a watchdog.
@@ -43,7 +48,7 @@
 //! * [`Comparison`] says where the model fails, octave by octave and in words.
 //! * [`diagnosis::Diagnosis`] finds the effects that are missing, and calls a pause between two pieces of work.
 //! * [`detection::Detection`] says from which size on a record would have shown an effect.
-//! * [`self_test::SelfTest`] holds coefficients to limits, and decides as soon as the record allows it.
+//! * [`self_test::SelfTest`] compares coefficients with limits, and decides as soon as the record allows it.
 //! * [`effect::Effect`] is a physical effect. [`effect::CATALOGUE`] lists the known ones, and
 //!   [one of your own](#an-effect-of-your-own) joins them.
 //!
@@ -58,28 +63,29 @@
 //!
 //! | module | what it does |
 //! |---|---|
-//! | [`sensor`] | reads an IMU on SPI or I²C through embedded-hal 1.0: a sensor is a description, and eight are there, four with FIFO |
+//! | [`sensor`] | reads an IMU on SPI or I²C through embedded-hal 1.0: 14 sensors are described, 5 of them with their FIFO |
 //! | [`queue`] | hands samples from an interrupt to the main loop, and loses none silently |
-//! | [`axis`] | leaves out samples that are stuck, at a rail, spikes or motion, and keeps everything else |
-//! | [`octave`] | is the accumulator: quarter-overlapping differences of adjacent clusters, exact in 158 bits |
-//! | [`spectrum`] | keeps power spectral densities beside the curve, and says what each effect adds to them |
-//! | [`integrity`] | judges whether the record is one of a gyro at rest |
-//! | [`faults`] | judges what the logger did: repeated samples, stuck values, clipping, a dead band |
-//! | [`kurtosis`], [`covariate`] | keep evidence beside the curve: jumps of the rate, and what follows a temperature |
-//! | [`course`] | says when the noise changed, a burst or a step came, and whether the gyro warmed up |
+//! | [`axis`] | rejects stuck or saturated samples (at a rail), spikes and motion, and records all others |
+//! | [`octave`] | is the accumulator: overlapping differences of adjacent clusters, a quarter apart, exact in 158 bits |
+//! | [`spectrum`] | measures power spectral densities, and computes those of each effect |
+//! | [`integrity`] | decides whether the record is one of a gyro at rest |
+//! | [`faults`] | detects faults of the logger: repeated samples, stuck values, saturation (clipping), a dead band |
+//! | [`kurtosis`], [`covariate`] | detect jumps of the rate, and its dependence on a temperature |
+//! | [`course`] | finds changes of the noise, bursts, steps and warm-ups in the block history |
 //! | [`curve`] | holds τ, averaging factor, variance and number of differences of each octave |
-//! | [`effect`], [`model`] | say what a curve is made of: one file an effect, and lists of effects |
+//! | [`effect`], [`model`] | the components of a curve, one file for each effect, and lists of effects |
 //! | [`fit`] | estimates the coefficients, with intervals and a goodness of fit |
 //! | [`ieee_952`] | does so for the five terms alone, for small cores |
 //! | [`comparison`] | compares model and measurement |
 //! | [`diagnosis`] | looks for the missing effect |
-//! | [`detection`] | says how large an effect would have been found |
+//! | [`detection`] | computes limits of detection: the size from which an effect would have been found |
 //! | [`self_test`] | gives a verdict against limits |
 //! | [`storage`] | keeps what outlives the power, as checked bytes |
 //!
 //! Every effect is one function, the generalised covariance of the angle. Its Allan variance follows from this
-//! function, and so does the way in which the octaves scatter together, finite record and overlap included
-//! ([`fit::curve_covariance`]). The weights of the fit, the intervals and χ² follow in turn. A coefficient is
+//! function, and so does the covariance of the octaves, finite record and overlap included
+//! ([`fit::curve_covariance`]); it takes the place of tables of equivalent degrees of freedom (EDF). The weights of the
+//! fit, the intervals and χ² follow in turn. A coefficient is
 //! *measured*, with a 95 % interval; or it has an *upper bound*; or it is *not observable*, and then the result
 //! gives the length of the record that would measure it ([`fit::State`]).
 //!
@@ -95,7 +101,7 @@
 //!
 //! These are rounded figures of a Cortex-M4F in single precision, built for size. `cargo xtask bench` in the
 //! repository measures them. It counts instructions in QEMU, not cycles. Its `host-tests/doc/firmware.md` has the
-//! exact figures of seven cores in both precisions.
+//! exact figures of 7 cores in both precisions.
 //!
 //! | what | about |
 //! |---|---|
@@ -144,10 +150,10 @@
 //!
 //! # Samples were lost
 //!
-//! [`Axes::gap`] marks the place. No difference spans the gap, and everything before it stays. If it is known how many
-//! samples were lost, [`Axes::lost`] fills up to 64 of them with a mean of those before, so that they cost only what they
-//! touch: short clusters leave out differences that touch them, and the curve of long ones and the spectrum take off what
-//! they change. [`Axes::merge`] adds another record of the same sensor, as if a gap lay between the two. [`Accumulator`] has
+//! [`Axes::gap`] marks the place. No difference spans the gap, and everything before it stays. If the number of lost
+//! samples is known, [`Axes::lost`] fills up to 64 of them with a mean of those before (gap filling): octaves of short
+//! clusters drop the differences that touch them, and the bias of the filled values is subtracted from long octaves and
+//! from the spectrum. [`Axes::merge`] adds another record of the same sensor, as if a gap lay between the two. [`Accumulator`] has
 //! `gap`, `lost` and `merge` too.
 //!
 //! # The power may fail
@@ -168,8 +174,8 @@
 //! # An effect of your own
 //!
 //! An effect is a description and a kernel, the generalised covariance of the angle. It takes one file, and one
-//! line in the list of effects that a diagnosis tries. [`effect::check`] in a unit test beside it finds what is most often
-//! wrong.
+//! line in the list of effects that a diagnosis tries. [`effect::check`] in its unit test finds the most frequent
+//! mistakes.
 //!
 //! ```
 //! use allanite::{Accumulator, Model, Real, Scale};

@@ -10,10 +10,10 @@ use crate::{
 };
 use heapless::Vec;
 
-/// The number of bands that are told at most.
+/// The largest number of bands that are reported.
 pub const MAX_BANDS: usize = 3;
 
-/// The fewest standard errors of a band that is told. Chosen by hand: about one in a million bands of a true model.
+/// The smallest significance of a reported band, in standard errors. Chosen by hand: about one in a million bands of a true model.
 const NOTICEABLE_BAND: Real = 5.0;
 
 /// The fewest standard errors of each of its bins. By convention: a bin of a true model exceeds it with a probability

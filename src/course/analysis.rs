@@ -28,7 +28,7 @@ const ROUNDS: usize = 4;
 /// The sizes have settled if none changes by more than this share of its standard error. Chosen by hand.
 const SETTLED: Real = 0.1;
 
-/// What a course and a curve tell together.
+/// The result of a course and a curve together.
 #[derive(Clone, Debug)]
 pub struct Analysis<const K: usize> {
     /// The events, the earliest first.
@@ -92,7 +92,7 @@ pub fn analyse<const K: usize, const COVARIATES: usize>(
     analyse_without(curve, model, course, scale, &[], options)
 }
 
-/// As [`analyse`], for a record whose rate follows something that was recorded beside it, such as a temperature. What
+/// As [`analyse`], for a record whose rate follows a recorded covariate, such as a temperature. What
 /// follows it is no event. `followed` is its mean in every block of the course, in rate units; blocks that it does not
 /// reach keep their mean. The curve is the one without it, as that of
 /// [`FollowedCovariate::correct`](crate::diagnosis::FollowedCovariate::correct).
@@ -167,7 +167,7 @@ fn has_settled(known: &[Shift], found: &[Shift]) -> bool {
         })
 }
 
-/// The events: the given shifts, and what the noise tells.
+/// The events: the given shifts, and those of the noise.
 #[inline(never)]
 fn told(
     block_length: u32,
@@ -212,7 +212,7 @@ fn event(shift: &Shift, block_s: Real) -> Event {
     }
 }
 
-/// Takes the one large difference of a step from the noise of its block, so that it is not told as a burst as well.
+/// Takes the one large difference of a step from the noise of its block, so that it is not reported as a burst as well.
 /// The block is the noisiest one near the step. It keeps at least the median noise.
 fn take_step(levels: &mut [Level], shift: &Shift) {
     let Form::Step { place, .. } = shift.form else {

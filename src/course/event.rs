@@ -1,9 +1,9 @@
-//! What a course can tell about a record.
+//! The events that a course (block history) can show.
 
 use crate::numerics::real::Real;
 use heapless::Vec;
 
-/// The number of events that are told at most.
+/// The largest number of events that are reported.
 pub const MAX_EVENTS: usize = 8;
 
 /// The events of a record, the earliest first.

@@ -6,7 +6,7 @@ use crate::numerics::{
     real::{Real, real},
 };
 
-/// The number of steps and warm-ups that are told at most.
+/// The largest number of steps and warm-ups that are reported.
 pub(super) const MAX_SHIFTS: usize = 4;
 
 /// The number of columns of a shift: its form, and the derivative of the form by its time or its time constant.
@@ -15,11 +15,11 @@ pub(super) const PER_SHIFT: usize = 2;
 /// The number of columns of all shifts.
 pub(super) const COLUMNS: usize = PER_SHIFT * MAX_SHIFTS;
 
-/// A step is told from this standardised size on. `cargo xtask study course` measures how often it is exceeded in
+/// A step is reported from this standardised size on. `cargo xtask study course` measures how often it is exceeded in
 /// clean records.
 const STEP: f64 = 5.0;
 
-/// A warm-up is told from this standardised size on: less than that of a step, because it has no choice of a time.
+/// A warm-up is reported from this standardised size on: less than that of a step, because it has no choice of a time.
 /// `cargo xtask study course` measures how often it is exceeded in clean records.
 const WARM_UP: f64 = 4.6;
 
@@ -67,7 +67,7 @@ impl Form {
         }
     }
 
-    /// The square of the standardised size from which on the form is told.
+    /// The square of the standardised size from which on the form is reported.
     pub(super) fn limit_square(self) -> Real {
         match self {
             Self::Step { .. } => real(STEP * STEP),

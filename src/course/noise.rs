@@ -18,21 +18,21 @@ use crate::{
 };
 use heapless::Vec;
 
-/// A noise change is told from this standardised ratio on. `cargo xtask study course` measures how often it is
+/// A noise change is reported from this standardised ratio on. `cargo xtask study course` measures how often it is
 /// exceeded in clean records: in 0.1 % of those of white noise, whatever their length.
 const CHANGE: f64 = 4.3;
 
-/// A burst is told from this standardised ratio on. `cargo xtask study course` measures how often it is exceeded in
+/// A burst is reported from this standardised ratio on. `cargo xtask study course` measures how often it is exceeded in
 /// clean records.
 const BURST: f64 = 4.85;
 
-/// Bursts are told as well if the noise is not the same in all blocks between two changes, with this p-value or less.
+/// Bursts are also reported if the noise is not the same in all blocks between two changes, with this p-value or less.
 const HOMOGENEOUS: f64 = 1e-5;
 
 /// The standardised ratio from which on a block has a burst, where there are bursts.
 const MARKED: f64 = 3.0;
 
-/// The number of noise changes that are told at most.
+/// The largest number of noise changes that are reported.
 pub(super) const MAX_CHANGES: usize = 3;
 
 /// The number of blocks in the neighbourhood of a block, itself included.

@@ -111,7 +111,7 @@ fn search(
     Some(forms)
 }
 
-/// The sizes of shifts, estimated together by generalised least squares, beside a slope of any size.
+/// The sizes of shifts, estimated together with a slope by generalised least squares.
 #[inline(never)]
 fn estimate(means: &BlockMeans<'_>, squares: &[Real], forms: &[Form]) -> Option<Shifts> {
     let mut contrasts = means.contrasts(squares)?;
@@ -206,7 +206,7 @@ impl Contrasts {
         }
     }
 
-    /// The sizes of shifts with these forms. `None` if they cannot be told apart.
+    /// The sizes of shifts with these forms. `None` if they cannot be distinguished.
     fn estimated(&self, forms: &[Form]) -> Option<Shifts> {
         let number = forms.len().saturating_mul(PER_SHIFT).min(COLUMNS);
         let column = |p: usize| {

@@ -1,7 +1,7 @@
-//! How many shifts the block means need beside slow noise of any size.
+//! How many shifts the block means need in addition to slow noise of any size.
 //!
-//! The fit to a curve that holds a ramp or a step does not resolve rate random walk and flicker noise. Beside the wander
-//! of a walk whose coefficient is fitted as zero, any part of it looks like a step; beside one that has swallowed a step,
+//! The fit to a curve that holds a ramp or a step does not resolve rate random walk and flicker noise. In the wander
+//! of a walk whose coefficient is fitted as zero, any part of it looks like a step; if it has absorbed a step,
 //! no step is significant. The block means themselves know how much of their wander is noise. Therefore models with
 //! more and with fewer shifts are compared by their likelihood, each with the slow noise that suits it best.
 
@@ -42,13 +42,13 @@ const NEGLIGIBLE: Real = 0.05;
 /// together: in the middle, on a logarithmic scale, of the durations that the course resolves.
 const MIDDLE: u32 = 8;
 
-/// The number of shifts that are needed, and the squared coefficients of the noise beside them.
+/// The number of shifts that are needed, and the squared coefficients of the noise fitted with them.
 pub(super) struct Needed {
     pub(super) number: usize,
     pub(super) squares: Squares,
 }
 
-/// The most likely slow noise beside some number of shifts.
+/// The most likely slow noise for some number of shifts.
 #[derive(Clone, Copy)]
 struct Likeliest {
     /// `−2 ln L`, up to a constant.
@@ -61,9 +61,9 @@ struct Likeliest {
 /// The bias instability, the rate random walk and the slope of the course are free, as far as the model has them. The
 /// other coefficients are known well from shorter averaging times, and remain. The number is that with the least
 /// `−2 ln L + Σ z²` (Yao, Statistics & Probability Letters 6, 181, 1988), where `z` is the limit of each form: a shift, or two
-/// that make a bump, must be as much more likely than slow noise as a form of this size is beside known noise.
+/// that make a bump, must be as much more likely than slow noise as a form of this size is in known noise.
 ///
-/// The errors of the sizes are those beside the larger one of the slow noise that is most likely, and of that which was
+/// The errors of the sizes are those in the larger one of the slow noise that is most likely, and of that which was
 /// fitted. The first one is too small by its own choice, and the second one where the curve does not resolve it.
 #[inline(never)]
 pub(super) fn needed(means: &BlockMeans<'_>, squares: &[Real], forms: &[Form]) -> Needed {
@@ -94,7 +94,7 @@ pub(super) fn needed(means: &BlockMeans<'_>, squares: &[Real], forms: &[Form]) -
     best
 }
 
-/// The most likely slow noise beside the first shifts of a list, for every number of them from none on.
+/// The most likely slow noise with the first shifts of a list, for every number of them from none on.
 ///
 /// Flicker noise, a random walk, and both together are tried in sizes that fall by a [`RATIO`].
 fn likeliest(
@@ -151,7 +151,7 @@ fn likeliest(
     best
 }
 
-/// Keeps some squared coefficients for every number of shifts beside which they are more likely than what was tried
+/// Keeps some squared coefficients for every number of shifts with which they are more likely than what was tried
 /// before.
 #[inline(never)]
 fn compare(means: &BlockMeans<'_>, squares: &Squares, forms: &[Form], best: &mut [Likeliest]) {

@@ -25,7 +25,7 @@ use crate::{
 };
 use heapless::Vec;
 
-/// The number of powers of two at which `G` is known: the largest distance is that of `m = 128` beside a gap of 64.
+/// The number of powers of two at which `G` is known: the largest distance is that of `m = 128` and a gap of 64.
 const NODES: usize = 11;
 
 /// The octave from which on the change falls in proportion to the number of samples of a cluster.

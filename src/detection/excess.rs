@@ -26,7 +26,7 @@ const SHOWN: Real = 0.65;
 /// What is left of a model where an effect takes away from it, at least.
 const LEAST: Real = 1e-3;
 
-/// A record as a model explains it, and an effect beside it.
+/// A record as a model explains it, and an additional effect.
 pub(super) struct Excess<'o, 'a, const B: usize> {
     observation: &'o Observation<'a, B>,
     work: Workspace<B>,
@@ -173,7 +173,7 @@ impl<'o, 'a, const B: usize> Excess<'o, 'a, B> {
     /// Returns its squared coefficients. `line` is the part that is deterministic, and scatters only as it beats with noise.
     ///
     /// The fall is that of a noncentral χ² with the noncentrality `λ = 2 Σ ν (x/m − 1 − ln x/m)`, and the variance of
-    /// `4 Σ ν (x/m − 1)²` beside that of its degrees of freedom.
+    /// `4 Σ ν (x/m − 1)²` in addition to that of its degrees of freedom.
     #[inline(never)]
     fn shows(
         &mut self,

@@ -9,7 +9,7 @@
 //! [`Detection`] goes through the effects and their shapes, [`Limit`] is what it finds for one shape, and
 //! [`Ranges`] puts the limits of neighbouring shapes together.
 //!
-//! There is no limit where an effect cannot be told from the model up to a hundred times the record itself, such as
+//! There is no limit where an effect cannot be distinguished from the model up to a hundred times the record itself, such as
 //! for a sinusoid whose period is longer than the record.
 
 mod excess;

@@ -44,7 +44,7 @@ const LONGER: Real = 1.3;
 /// The relative difference of two sizes that are the same.
 const AGREES: Real = 0.004;
 
-/// The size of each effect that a record would have shown, beside the model that a diagnosis ended with.
+/// The size of each effect that a record would have shown in addition to the final model of a diagnosis.
 ///
 /// Nothing is computed unless it is asked for, and a program that does not name this type holds none of its code.
 ///
@@ -88,7 +88,7 @@ pub struct Detection<'a, const K: usize, const B: usize = 0> {
 }
 
 impl<'a, const K: usize, const B: usize> Detection<'a, K, B> {
-    /// The limits beside the model of a step, which is the last one of a diagnosis. The curve and the spectrum of the record
+    /// The limits of detection given the model of a step, which is the last one of a diagnosis. The curve and the spectrum of the record
     /// are those on which the step was judged, without what follows a covariate. `effects` and `options` are those of the
     /// diagnosis.
     ///
@@ -160,7 +160,7 @@ impl<'a, const K: usize, const B: usize> Detection<'a, K, B> {
         self.record.curve.span()
     }
 
-    /// Whether there is a size from which on an effect shows beside the model. That of a filter is its length, which a
+    /// Whether there is a size from which on an effect shows in addition to the model. That of a filter is its length, which a
     /// filter around a frequency does not have.
     fn has_limit(&self, effect: &'static dyn Effect) -> bool {
         let Some(first) = effect.parameters().first() else {

@@ -193,7 +193,7 @@ fn a_model_that_is_not_adequate_has_no_limits() {
     );
 }
 
-/// A model with a fitted shape has limits beside this shape, but none of the effect that it has.
+/// A model with a fitted shape has limits given this shape, but none of the effect that it has.
 #[test]
 fn an_effect_in_the_model_has_no_limit() {
     let hidden = (term(&Sinusoid, [7.7, 0.0]), 0.04 * 0.04);

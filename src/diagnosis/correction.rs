@@ -29,8 +29,8 @@ impl FollowedCovariate {
     /// it is noticeable.
     ///
     /// An octave becomes `σ²_g − 2α C_gx + α² σ²_x`. The slope's own error ε takes some of the noise away as well,
-    /// `ε² σ²_x` on average, which is added back. Octaves in which the covariate is its sensor's noise tell
-    /// nothing of what the rate follows there. It is taken to fall on towards shorter ones as it does between the first
+    /// `ε² σ²_x` on average, which is added back. Octaves in which the covariate is its sensor's noise have
+    /// no information about what the rate follows there. It is taken to fall on towards shorter ones as it does between the first
     /// two octaves that are no noise: as `τ`, like a random walk, to `τ²`, like a smooth change.
     ///
     /// No sums say what a bin has in common with the covariate. A covariate is slow, so that it reaches the levels

@@ -36,12 +36,12 @@ struct Search<'s, 'a, const K: usize, const B: usize> {
     observed: Observed<'a, K, B>,
     record: &'s Record<'a, K, B>,
     model: &'s Model,
-    /// The squares of the model beside which covariates are tried.
+    /// The squares of the model with which covariates are tried.
     squares: Vector,
     tolerance: Real,
 }
 
-/// Tests whether the rate follows a covariate, or two of them, beside the noise of a model with these squared coefficients.
+/// Tests whether the rate follows a covariate, or two of them, in the noise of a model with these squared coefficients.
 /// Returns what has the surest slopes, if that is more than `least_z` standard errors.
 ///
 /// # Errors
@@ -126,7 +126,7 @@ impl<const K: usize, const B: usize> Search<'_, '_, K, B> {
         Ok(found)
     }
 
-    /// The slopes beside the noise of the present fit. `None` if a covariate does not change, or if the covariates of
+    /// The slopes in the noise of the present fit. `None` if a covariate does not change, or if the covariates of
     /// a pair take the same course.
     fn estimate(&self, place: usize, squares: &Vector) -> Option<FollowedCovariate> {
         let (curve, record, model) = (self.observed.curve(), self.record, self.model);

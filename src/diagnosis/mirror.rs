@@ -1,4 +1,4 @@
-//! The kurtosis tells an effect from another one that has the same Allan variance. If it cannot, both are named.
+//! Distinguishes two effects with the same Allan variance by the kurtosis. If the kurtosis does not decide, both are named.
 
 use super::polish::Fitted;
 use crate::{

@@ -1,8 +1,8 @@
 //! Which effect is missing: a diagnosis finds what a model lacks, adds it, and judges the curve again.
 //!
 //! A [`Diagnosis`] judges a model, tests whether the rate follows a covariate, and searches for what is missing: several
-//! hypotheses are kept side by side, each a story of the whole record, until the likelihood decides between them. What was
-//! found is narrated step by step, the largest fall of the error first.
+//! hypotheses are kept in parallel, each an explanation of the whole record, until the likelihood decides between them. The
+//! effects found are reported step by step, the largest fall of the error first.
 
 mod alternative;
 mod assessment;

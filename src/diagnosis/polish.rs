@@ -19,7 +19,7 @@ use heapless::Vec;
 /// `cargo xtask study hidden-effect` runs with this value and does not vary it.
 const ROUNDS: u8 = 10;
 /// The rounds end when `−2 ln L` changes by less than this. Chosen by hand, to save rounds: it is small
-/// beside the improvement of 8 for which an effect is accepted.
+/// compared with the improvement of 8 for which an effect is accepted.
 const SETTLED: Real = 0.5;
 /// The largest step of a shape's logarithm. Chosen by hand: a round changes a shape by at most 22 %.
 /// `cargo xtask study hidden-effect` runs with this value and does not vary it.

@@ -1,5 +1,5 @@
-//! A diagnosis: a model is judged, what it lacks is looked for, and the way to the model that explains the record is told
-//! step by step.
+//! A diagnosis: it tests a model, searches for the effects that it lacks, and reports the steps to the model that explains
+//! the record.
 
 use super::{
     assessment::{Assessment, assess},
@@ -22,16 +22,16 @@ use crate::{
 };
 use core::ops::ControlFlow;
 
-/// The fall of half of −2 ln L that an effect needs beside the usual price where the rate follows a covariate: an error of the
+/// The fall of half of −2 ln L that an effect needs in addition to the usual price where the rate follows a covariate: an error of the
 /// slope or of a lag leaves something of the covariate, which is noise of a few hundred seconds. `cargo xtask study thermal
-/// --drawn` named an effect beside the covariate in 20 of 960 records without it, and in 7 with it.
+/// --drawn` named an effect in addition to the covariate in 20 of 960 records without it, and in 7 with it.
 const COVARIATE_DOUBT: Real = 6.0;
 
 /// A diagnosis in progress, which finds out which effects are missing.
 ///
 /// It judges a model, looks whether the rate follows a covariate, and then looks for what is missing among a list of effects
 /// such as [`CATALOGUE`](crate::effect::CATALOGUE). It always looks, because no single test of the whole model sees every
-/// effect. The steps from the first model to the last one are told in the order in which the error falls most.
+/// effect. The steps from the first model to the last one are reported in the order in which the error falls most.
 ///
 /// [`run`](Self::run) does all of it. [`advance`](Self::advance) leads to the next step. In both, a *pause* is called between
 /// two pieces of work, so that a main loop can feed its watchdog and take its samples. A piece takes at most 2 million
@@ -72,7 +72,7 @@ pub struct Diagnosis<'a, const K: usize, const B: usize = 0> {
     /// The present model, and what is reported about it.
     step: Step<K, B>,
     assessment: Assessment,
-    /// What was found and is told; `None` before the search.
+    /// The result of the search; `None` before it.
     story: Option<Story>,
     next: Next,
 }
@@ -84,9 +84,9 @@ enum Next {
     Judging,
     /// The model is judged again, without what follows the covariate.
     JudgingAgain,
-    /// Effects are looked for, and the step is told.
+    /// Effects are searched for, and the step is reported.
     Searching,
-    /// The next step of the story is told.
+    /// The next step is reported.
     Telling,
     Finished(Result<Verdict, Error>),
 }
@@ -224,7 +224,7 @@ impl<'a, const K: usize, const B: usize> Diagnosis<'a, K, B> {
         Ok(())
     }
 
-    /// Tests the covariates again beside the noise of what was found, if they were not seen beside that of the first model,
+    /// Tests the covariates again in the noise of what was found, if they were not detected in that of the first model,
     /// which takes strong noise of another kind for that of the rate where it follows. Returns whether one is followed.
     fn follow_beside_story(&mut self, pause: &mut Pause<'_>) -> Result<bool, Stop> {
         let Some(story) = self.story.as_ref().filter(|story| !story.is_empty()) else {
@@ -249,7 +249,7 @@ impl<'a, const K: usize, const B: usize> Diagnosis<'a, K, B> {
         Ok(work.solver.squares)
     }
 
-    /// Tests the covariates for whether the rate follows them, beside the noise of a model.
+    /// Tests whether the rate follows the covariates, in the noise of a model.
     #[inline(never)]
     fn follow(
         &mut self,
@@ -284,7 +284,7 @@ impl<'a, const K: usize, const B: usize> Diagnosis<'a, K, B> {
         self.options.max_effects.saturating_sub(followed)
     }
 
-    /// How much more an effect has to explain beside a covariate.
+    /// How much more an effect has to explain in a record with a covariate.
     fn doubt(&self) -> Real {
         self.step.covariate.map_or(0.0, |_| COVARIATE_DOUBT)
     }

@@ -20,14 +20,14 @@ use crate::{
 const POLISHES: u8 = 8;
 
 /// The shapes have settled when none of their logarithms changes by more than this. Chosen by hand, to save time: it is
-/// small beside the interval of any shape that a record of a million samples shows.
+/// small compared with the interval of any shape that a record of a million samples shows.
 const SETTLED: Real = 1e-4;
 
 /// Fits the shapes of those effects of a model whose [`fitted`](field@Term::fitted) is set, all together, and returns the model
 /// with them. Whole numbers are kept, and so are the shapes of all other effects.
 ///
 /// The fit begins at the shapes that the model has, and ends in the minimum of `−2 ln L` near them. A shape of zeros
-/// is first looked for in the whole range of its effect, beside the effects whose shapes are known by then; a
+/// is first searched for in the whole range of its effect, given the effects whose shapes are known by then; a
 /// whole number above zero in it is kept. `tolerance` is that of
 /// [`fit::Options`](crate::fit::Options::tolerance), and [`fit`](crate::fit::fit()) of the returned model gives the
 /// coefficients and the intervals of the shapes.
@@ -128,7 +128,7 @@ fn granted<const K: usize, const B: usize>(
     Ok(work.solver.weights.tolerance)
 }
 
-/// The best shape of an effect beside a model, in the whole range of shapes. A whole number above zero is kept.
+/// The best shape of an effect that is added to a model, in the whole range of shapes. A whole number above zero is kept.
 fn best_shape<const K: usize, const B: usize>(
     observed: Observed<'_, K, B>,
     model: &Model,

@@ -55,11 +55,11 @@ pub struct FollowedCovariate {
     pub index: usize,
     /// The slope with which the rate follows the covariate.
     pub slope: Slope,
-    /// The covariate that acts beside it; `None` if it acts alone.
+    /// A second covariate that acts as well; `None` if there is none.
     pub beside: Option<SecondCovariate>,
 }
 
-/// A covariate that acts beside another one, such as the rate of change of a temperature that the rate follows with a
+/// A covariate that acts in addition to another one, such as the rate of change of a temperature that the rate follows with a
 /// lag.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

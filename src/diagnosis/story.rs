@@ -230,7 +230,7 @@ fn instead(best: &Hypothesis, other: &Hypothesis, term: &Term) -> Option<Term> {
     more.next().copied()
 }
 
-/// Puts the name of its mirror behind each name, because nothing has told the two apart.
+/// Puts the name of its mirror behind each name, because nothing distinguishes the two.
 fn mirrors(names: &mut Vec<&'static str, MAX_AMBIGUOUS>, effects: &[&'static dyn Effect]) {
     let mut at = 0_usize;
     while let Some(name) = names.get(at).copied() {

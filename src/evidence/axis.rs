@@ -40,7 +40,7 @@ pub struct AxisRecord<const OCTAVES: usize, const COVARIATES: usize = 0, D = Spe
     pub spectrum: D,
     /// The cosine transform of the course; `None` if no course is kept, or if it is too short.
     pub course: Option<CosineTransform>,
-    /// The kurtosis of the differences, which tells whether they are Gaussian; `None` if fourth moments
+    /// The kurtosis of the differences, which shows whether they are Gaussian; `None` if fourth moments
     /// are not kept.
     pub kurtosis: Option<Kurtosis<OCTAVES>>,
     /// What the axis has in common with each covariate.

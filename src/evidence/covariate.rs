@@ -1,4 +1,4 @@
-//! A covariate: anything that is sampled beside the gyro and that the rate may follow, such as a
+//! A covariate: any quantity that is sampled with the gyro and that the rate may follow, such as a
 //! temperature, its rate of change, an acceleration or a supply voltage.
 //!
 //! A covariate is measured and not modelled: `D_g = D_noise + α D_x`. So it needs no kernel, and it

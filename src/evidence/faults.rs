@@ -42,7 +42,7 @@ pub struct Repeats {
     pub share: Real,
     /// The probability that a sample of the sensor equals the one before by chance.
     pub chance: Real,
-    /// Repeats below this share cannot be told.
+    /// Repeats below this share cannot be detected.
     pub least: Real,
 }
 
@@ -52,7 +52,7 @@ impl Repeats {
         self.told && self.chance <= CHANCE
     }
 
-    /// Nothing can be told of repeats below the share of equal neighbours.
+    /// Repeats below the share of equal neighbours cannot be detected.
     const fn unknown(equal: Real) -> Self {
         Self {
             told: false,
@@ -88,7 +88,7 @@ impl SampleFaults {
         first.or_else(|| repeats.told.then(|| self.repeated(joint, &repeats)))
     }
 
-    /// The repeats of the axis: those of all axes at once where these tell of any.
+    /// The repeats of the axis: those of all axes at once where there are any.
     pub fn repeats(&self, joint: Option<&JointRepeats>) -> Repeats {
         let own = self.own_repeats();
         match joint.map(JointRepeats::repeats) {
@@ -107,7 +107,7 @@ impl SampleFaults {
         self.stuck(joint).is_some()
     }
 
-    /// The differences of noise have a smooth distribution, so that those of one and two steps tell how many are zero.
+    /// The differences of noise have a smooth distribution, so that the numbers of one and two steps give that of zero.
     fn own_repeats(&self) -> Repeats {
         let steps = &self.steps;
         let [zero, one, two, three] = steps.near.map(|number| number as Real);
@@ -226,7 +226,7 @@ impl SampleFaults {
         })
     }
 
-    /// Zeros in the middle of a hole, about as many as the values beside it let expect to be in it. Or more zeros than the
+    /// Zeros in the middle of a hole, about as many as the values next to it let expect in it. Or more zeros than the
     /// levels next to them let expect, where all larger values are moved towards zero.
     fn dead_band(&self) -> Option<Reason> {
         let Hole {
@@ -290,7 +290,7 @@ impl SampleFaults {
 
 /// The repeats of values whose differences are hardly longer than a step. The sensor's value before rounding lies anywhere
 /// within a step, so that the differences of white or slow Gaussian noise have the distribution of Gaussian ones plus
-/// a triangle of two steps. The numbers of one and two steps tell its width, and with it that of zero.
+/// a triangle of two steps. The numbers of one and two steps give its width, and with it that of zero.
 fn coarse_repeats(near: [u64; 4], pairs: Real) -> Repeats {
     let [zero, one, two, three] = near.map(|number| number as Real);
     let ratio = two / one;
@@ -366,9 +366,9 @@ fn fine_repeats(steps: &Steps) -> Repeats {
     Repeats::new(z, share, error / pairs, by_chance / pairs)
 }
 
-/// Whether runs of repeats are too long. `fine` tells that none is there by chance. Then a sensor slower by a factor
+/// Whether runs of repeats are too long. `fine` means that none is there by chance. Then a sensor slower by a factor
 /// `1/(1 − r)` has no runs beyond this factor, and repeats at random go on with the probability `r`. Else the short
-/// runs tell how likely a run goes on.
+/// runs show how likely a run goes on.
 fn is_stuck(reached: &[u64; 6], (zeros, long): (u64, u64), pairs: u64, fine: bool) -> bool {
     let [one, two, four, ..] = reached.map(|number| number as Real);
     let share = zeros as Real / pairs.max(1) as Real;
@@ -406,7 +406,7 @@ impl JointRepeats {
 
     /// The share of samples in which all axes repeat, beyond chance.
     ///
-    /// A sample in which an axis moves is one of the sensor, so that such samples tell how often each of the other axes
+    /// A sample in which an axis moves is one of the sensor, and such samples show how often each of the other axes
     /// repeats by chance. If the axes are independent, all of them do so as often as the product. If a common
     /// disturbance moves them, two axes repeat together more often than that, and only what three axes do beyond any two,
     /// or beyond their third one's own smooth distribution, counts.

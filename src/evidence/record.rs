@@ -13,7 +13,7 @@ use crate::{
 };
 
 /// Everything that is kept of a record of one axis, which a [`Diagnosis`](crate::diagnosis::Diagnosis) judges. All but
-/// the curve is optional: the more is kept, the more effects can be told apart.
+/// the curve is optional: the more is kept, the more effects can be distinguished.
 ///
 /// A curve alone is a record too: `(&curve).into()`.
 #[derive(Clone, Copy, Debug)]
@@ -29,7 +29,7 @@ pub struct Record<'a, const K: usize, const B: usize = 0> {
     pub kurtosis: Option<&'a Kurtosis<K>>,
     /// The covariates that the rate may follow. One of them is taken into account, the one with the
     /// surest slope, or a pair of them. If two covariates take the same course, their cross sums with the
-    /// gyro do not tell which one the rate follows.
+    /// gyro do not show which one the rate follows.
     pub covariates: &'a [CrossCurve<K>],
     /// The covariates that may act together, such as a temperature and its rate of change.
     pub pairs: &'a [Pair<K>],

@@ -42,7 +42,7 @@ pub struct Coefficient {
     /// Lower end of the 95 % interval; zero unless the coefficient is measured.
     pub lower: Real,
     /// Upper end of the 95 % interval, or the one-sided 95 % bound. It is infinite if the effect cannot
-    /// be told from others.
+    /// be distinguished from others.
     pub upper: Real,
     /// Whether the coefficient is measured, bounded or not observable.
     pub state: State,

@@ -1,4 +1,4 @@
-//! The fit: it turns a curve into the coefficients of a model's effects, with intervals, and tells how
+//! The fit: it turns a curve into the coefficients of a model's effects, with intervals, and measures how
 //! well the model explains the curve.
 //!
 //! [`fit()`] works in one go, [`Fitting`] in pieces. Both minimise `r'C⁻¹r`, where `r` are the

@@ -3,7 +3,7 @@
 //! A fit to octaves and bins takes both for independent, and each level's bins for independent of those of the
 //! others. They overlap a little, so that the joint errors of `N` and `B` come out 6 % and 16 % too small. The
 //! octaves' covariance is exact, and they keep all that power laws say: their coefficients scatter 6 % to 12 % less
-//! than the joint ones. So the coefficients come from the octaves alone, and the joint fit tells whether the model is
+//! than the joint ones. So the coefficients come from the octaves alone, and the joint fit decides whether the model is
 //! adequate. In the end, those that are hardly above zero are tested against zero.
 
 use super::{

@@ -83,7 +83,7 @@ impl Significance {
 }
 
 /// The skewness of a square's estimate by the weights and the equations of a solver. It is zero if the square cannot be
-/// told from others.
+/// distinguished from others.
 ///
 /// A variance with ν degrees of freedom has the third cumulant √(8/ν) times its cubed standard error. The octaves are
 /// taken for independent in this.

@@ -22,7 +22,7 @@ type Products = [[f32; TERMS]; TERMS];
 impl Fit {
     /// The length, in seconds, of a record in which the term at `place` would be measured, if it is as large as its
     /// [upper end](crate::Coefficient::upper) on the curve that was fitted. The present length is doubled as often as
-    /// needed. `None` if no length is enough, or if the curve tells the term from the others in no way.
+    /// needed. `None` if no length is enough, or if the curve cannot distinguish the term from the others.
     ///
     /// The rule is that of [`State::NotObservable`](crate::fit::State::NotObservable) of the general fit. It is apart from
     /// the fit, so that a device that does not ask pays nothing.

@@ -76,7 +76,7 @@ impl Tableau {
         self.at(i, i)
     }
 
-    /// Whether unknown `i`, which is not solved, can be told from those that are.
+    /// Whether unknown `i`, which is not solved, can be distinguished from those that are.
     fn can_be_told(&self, i: usize) -> bool {
         LEAST_PIVOT < self.pivot_of(i)
     }
@@ -164,7 +164,7 @@ impl Tableau {
         fall
     }
 
-    /// Lets an unknown change sides, if it can be told from the others. Returns by how much the squared residuals fall.
+    /// Lets an unknown change sides, if it can be distinguished from the others. Returns by how much the squared residuals fall.
     fn change(&mut self, i: usize) -> f32 {
         let (value, own, was_free) = (self.value(i), self.pivot_of(i), self.has(i));
         if !was_free && !self.can_be_told(i) {

@@ -130,7 +130,7 @@ impl NormalEquations {
     }
 
     /// Solves the scaled equations of the free unknowns for any right side, in place. Returns `false`
-    /// if they cannot be told apart.
+    /// if they cannot be distinguished.
     #[inline(never)]
     fn solve_for(&self, free: &PassiveSet, x: &mut Vector) -> bool {
         let mut factor = Matrix::ZEROS;
@@ -267,7 +267,7 @@ impl NormalEquations {
         trial
     }
 
-    /// The variance of one of the free unknowns. `None` if they cannot be told apart.
+    /// The variance of one of the free unknowns. `None` if they cannot be distinguished.
     pub(crate) fn variance(&self, i: usize, free: &PassiveSet) -> Option<Real> {
         let mut unit = Vector::zeros();
         unit.put(i, 1.0);

@@ -55,7 +55,7 @@ pub type Axis<
 /// | `OCTAVES` | octaves of averaging time, 2 to 30 | – |
 /// | `COVARIATES` | covariates sampled with every count, such as a temperature or a supply voltage | 0 |
 /// | `G` | [`Gated`], or `()` to keep every sample | [`Gated`] |
-/// | `M` | [`Moments`], or `()`: then telegraph and Gauss–Markov noise cannot be told apart | [`Moments`] |
+/// | `M` | [`Moments`], or `()`: then telegraph and Gauss–Markov noise cannot be distinguished | [`Moments`] |
 /// | `AXES` | axes that share the gate's decision and the covariates; see [`Axis`] for one | 3 |
 /// | `S` | [`Spectral`](crate::spectrum::Spectral), or `()`: then the diagnosis sees octaves alone | `()` |
 /// | `T` | [`Courses`], or `()`: then it is not known when something happened | `()` |
@@ -154,7 +154,7 @@ where
         }
     }
 
-    /// Does a part of the work of the spectra that waits, and tells whether there is more. A call transforms
+    /// Does a part of the pending work of the spectra, and returns whether there is more. A call transforms
     /// at most one segment of one axis.
     ///
     /// Calling it is optional. If a main loop calls it while it has nothing else to do, [`push`](Self::push)
@@ -216,8 +216,8 @@ where
         axes.all(|(ours, theirs)| ours.accumulator.is_like(&theirs.accumulator))
     }
 
-    /// Adds another record of the same sensor, as if a gap lay between the two. Whether it can be one,
-    /// [`is_like`](Self::is_like) tells. Both gates first
+    /// Adds another record of the same sensor, as if a gap lay between the two. [`is_like`](Self::is_like)
+    /// checks whether it can be one. Both gates first
     /// release the samples that they hold back. The courses stay those of this record, because another record has
     /// no place in its time.
     pub fn merge(&mut self, other: &Self) {

@@ -18,8 +18,8 @@ pub use reason::Reason;
 
 use state::{CLUSTERS, State};
 
-/// Watches the counts beside an [`Accumulator`](crate::Accumulator), in fixed memory and integers only,
-/// and tells whether the Allan curve is valid.
+/// Watches the counts of an [`Accumulator`](crate::Accumulator), in fixed memory and integers only,
+/// and decides whether the Allan curve is valid.
 ///
 /// An Allan variance assumes a gyro at rest whose noise stays the same. It averages whatever it is
 /// given: one corrupt word on the bus raises every octave as white noise would, a hand on the bench

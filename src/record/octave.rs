@@ -317,8 +317,8 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
         self.gaps = self.gaps.saturating_add(1);
     }
 
-    /// Adds another record of the same sensor, as if a gap lay between the two. Whether it can be one,
-    /// [`is_like`](Self::is_like) tells.
+    /// Adds another record of the same sensor, as if a gap lay between the two. [`is_like`](Self::is_like)
+    /// checks whether it can be one.
     pub fn merge(&mut self, other: &Self) {
         if other.samples() == 0 {
             return;

@@ -10,7 +10,7 @@ use crate::{
 };
 use heapless::Vec;
 
-/// What tells a look from those of other tests: where its test lay when the look began, and which of its looks it is.
+/// What distinguishes a look from those of other tests: where its test lay when the look began, and which of its looks it is.
 pub(super) type Mark = (usize, u32);
 
 /// A look in progress, for a main loop that has other work to do: the first call of [`advance`](Self::advance) takes as long

@@ -244,7 +244,7 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
 
     /// Begins a look at an accumulator of counts, whose rate and unit are those of the test: for a sensor that has no room for
     /// an [`Axis`](crate::Axis). What is wrong with the samples, if anything watches them, such as an
-    /// [`Integrity`](crate::integrity::Integrity), is passed beside. A look that this test has begun before can no longer be
+    /// [`Integrity`](crate::integrity::Integrity), is passed as well. A look that this test has begun before can no longer be
     /// concluded.
     #[inline(never)]
     pub fn begin_look_at(

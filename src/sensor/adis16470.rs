@@ -167,7 +167,7 @@ impl<SPI: SpiDevice> Adis16470<SPI> {
     ///
     /// # Errors
     /// [`Error::Bus`], [`Error::Checksum`], [`Error::Failure`], or [`Error::Overtaken`] if the bus is too slow for the
-    /// rate. The sensor stays usable: the caller only has to continue reading, and the next reading tells what was lost.
+    /// rate. The sensor stays usable: the caller only has to continue reading, and the next reading reports what was lost.
     pub fn read(&mut self, delay: &mut impl DelayNs) -> Result<Option<Reading>, Error<SPI::Error>> {
         let mut read = Read::new(self.last);
         carry_out(&mut self.spi, delay, &mut read)?;

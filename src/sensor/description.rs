@@ -62,7 +62,7 @@ impl Interface {
     }
 }
 
-/// The register and the bits that tell whether a sample is ready.
+/// The register and the bits that show whether a sample is ready.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Status {
@@ -163,7 +163,7 @@ pub struct Description {
     pub start_up: Writes<MAX_START_UP>,
     /// The addresses and how they are sent.
     pub interface: Interface,
-    /// The status register, which tells whether a sample is ready.
+    /// The status register, which shows whether a sample is ready.
     pub status: Status,
     /// How the interrupt pin announces a sample; `None` if the start-up writes do not use the pin.
     pub signal: Option<Signal>,
@@ -198,7 +198,7 @@ pub enum Flaw {
     StartUp,
     /// The address over I²C has more than 7 bits or is reserved, or SPI has more than three dummy bytes.
     Interface,
-    /// No bit of the status tells that a sample is ready.
+    /// No bit of the status shows that a sample is ready.
     Status,
     /// Gyro and temperature lie too far apart to be read in one transaction of 24 bytes.
     Block,

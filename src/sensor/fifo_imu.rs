@@ -24,7 +24,7 @@ use embedded_hal::delay::DelayNs;
 /// | the transaction that empties the FIFO | as before; the next read tries again |
 ///
 /// In all cases the next reading says how many samples are missing. The stamps of the ICMs have 16 bits and come
-/// round after 1.1 s. The host's time tells how often, after a silence of up to 8 s; after a longer one the number is
+/// round after 1.1 s. The host's time shows how often, after a silence of up to 8 s; after a longer one the number is
 /// unknown. No sample comes twice, because a time that is not later than the last one is refused.
 ///
 /// ```

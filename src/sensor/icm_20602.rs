@@ -87,6 +87,6 @@ pub const fn icm_20602(wanted: Configuration) -> Result<Description, Configurati
 ///
 /// Not verified: the data sheet was not at hand. One public driver, that of a hobbyist, and those of the siblings ICM-20608-G
 /// and IAM-20380 name the cut-offs of the low pass; none names its order. The largest noise bandwidth, that of a first
-/// order, is stated. Then folded noise raises N by at most 1.6 %. The FIFO holds no time, so that it would not tell
-/// what was lost.
+/// order, is stated. Then folded noise raises N by at most 1.6 %. The FIFO holds no time, from which
+/// lost samples could be counted.
 pub static ICM_20602: Description = checked(icm_20602(Configuration::new(200, 250)));

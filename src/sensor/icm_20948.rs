@@ -110,5 +110,5 @@ pub const fn icm_20948(wanted: Configuration) -> Result<Description, Configurati
 /// SparkFun's names of the filters give cut-offs and noise bandwidths: 23.9 and 35.9 Hz for GYRO_DLPFCFG 4, whose ratio is
 /// nearly that of a first order, 1.571. The larger bandwidth of a first order is stated.
 ///
-/// Not verified: the data sheet was not at hand. The 4 KiB of the FIFO hold no time, so that it would not tell what was lost.
+/// Not verified: the data sheet was not at hand. The 4 KiB of the FIFO hold no time, from which lost samples could be counted.
 pub static ICM_20948: Description = checked(icm_20948(Configuration::new(225, 250)));

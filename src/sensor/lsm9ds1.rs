@@ -25,7 +25,7 @@ use super::{
 /// not legible, so that the code of the path through LPF2 is that of ST's driver alone. It does not say what clears GDA,
 /// which is taken to be the read of a sample, as in ST's later sensors. The temperature is zero at 25 °C in
 /// Zephyr; the data sheet gives its scale. The magnetometer has its own address and is left alone. The FIFO holds no
-/// time, so that it would not tell what was lost.
+/// time, from which lost samples could be counted.
 pub static LSM9DS1: Description = Description {
     name: "LSM9DS1",
     // WHO_AM_I (7.11).

@@ -6,10 +6,10 @@
 //!
 //! * An [`Imu`] reads one sample at a time. [`Pace`] detects lost samples that the sensor does not report, and a
 //!   configured rate that differs from the true one, from the times at which the host reads.
-//! * A [`FifoImu`] reads bursts from the sensor's FIFO. Every sample has the sensor's own time, so that lost samples
-//!   are known in number, and a [`Clock`] measures the sensor's rate.
+//! * A [`FifoImu`] reads bursts from the sensor's FIFO. Every sample has the sensor's own time, from which lost samples
+//!   are counted, and a [`Clock`] measures the sensor's rate.
 //! * An [`Adis16470`] is read by a driver of its own, because it has frames of 16 bits and counts of 32 bits. Its counter of
-//!   samples tells what was lost in number.
+//!   samples gives the number of lost ones.
 //!
 //! [`Axes`](crate::Axes) turns what was lost into gaps.
 //!
@@ -65,7 +65,7 @@
 //! they were compared with, and what could not be verified. None of it was measured on a sensor.
 //!
 //! The sensors without a FIFO here have one in silicon. The FIFOs of the BMI160 and the BMI270 hold a time only at the
-//! end of their content, and the others hold none, so that they would not tell what was lost. These sensors are read one sample at a time.
+//! end of their content, and the others hold none; lost samples could not be counted. These sensors are read one sample at a time.
 //!
 //! The [`Adis16470`] has a range of ±2000 °/s and rates up to 1000 Hz. It averages the samples that it leaves out, so that no noise
 //! folds back either.

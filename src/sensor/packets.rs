@@ -44,7 +44,7 @@ pub trait Packets: Sync {
     /// The sample in a packet; `None` if it holds none.
     ///
     /// # Errors
-    /// [`Malformed`] if it makes no sense. The rest of the FIFO is then left out, and what was lost is told by the time of
+    /// [`Malformed`] if it makes no sense. The rest of the FIFO is then left out, and what was lost follows from the time of
     /// the next sample.
     fn decode(&self, packet: &[u8]) -> Result<Option<Packet>, Malformed>;
 }

@@ -11,7 +11,7 @@ const FRACTION: u64 = WINDOW as u64;
 const PS_PER_US: u64 = 1_000_000;
 
 /// The largest disagreement of the clocks of sensor and host that is expected, as the exponent of a fraction 1/2ⁿ: 3 %
-/// for a time of less than 32 bits, whose rounds have to be told apart, and else 12 %.
+/// for a time of less than 32 bits, whose rounds have to be distinguished, and else 12 %.
 const fn disagreement(bits: u32) -> u32 {
     if bits < 32 { 5 } else { 3 }
 }

@@ -114,7 +114,7 @@ impl Start {
         }
     }
 
-    /// The stage after the sensor has been told to listen to the bus.
+    /// The stage after the sensor was set to listen to the bus.
     const fn listening(is_reset: bool) -> Stage {
         match is_reset {
             true => Stage::first(List::Open),

@@ -27,9 +27,9 @@ pub struct Upload {
     pub wait_us: u32,
     /// The write after the last block. Its pause lasts until the sensor has started with the image.
     pub close: Write,
-    /// The register that tells whether the sensor has accepted the image.
+    /// The register that shows whether the sensor has accepted the image.
     pub status: u8,
-    /// The bits of that register which tell it.
+    /// The bits of that register which show it.
     pub mask: u8,
     /// What these bits say if the sensor has accepted the image.
     pub accepted: u8,

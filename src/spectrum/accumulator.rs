@@ -18,7 +18,7 @@ use super::{
 /// rest in the main loop: one call transforms at most one segment. The accumulator holds `P` counts until they
 /// are worked on, so a main loop that calls `advance` until it returns `false` has to do so every `P` samples.
 ///
-/// If it is late, the counts that find no room are left out, and [`lost`](Self::lost) tells their number. The
+/// If it is late, the counts that find no room are left out, and [`lost`](Self::lost) is their number. The
 /// place is treated as a [`gap`](Self::gap): no segment spans it, and the sums stay right. A gap ends a segment
 /// at every level, so each loss costs the highest levels most. A few samples of known number that were lost before
 /// they came here need no gap: go on with the values that [fill](crate::Accumulator::filling) their place, and
@@ -180,7 +180,7 @@ impl<const P: usize, const LEVELS: usize> SpectrumAccumulator<P, LEVELS> {
         self.taken = (first.wrapping_add(last.len()) % P) as u32;
     }
 
-    /// Does a part of the work that waits, and tells whether there is more. A call transforms at most one
+    /// Does a part of the pending work, and returns whether there is more. A call transforms at most one
     /// segment.
     pub fn advance(&mut self) -> bool {
         while self.due == 0 && self.waiting > 0 {

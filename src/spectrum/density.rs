@@ -1,4 +1,4 @@
-//! The spectrum, which is what remains of the samples beside the curve.
+//! The spectrum of a record, which is stored with the curve.
 
 use super::{
     accumulator::SpectrumAccumulator,

@@ -2,7 +2,7 @@
 //! is expected to add to them, and how they scatter.
 //!
 //! Twenty octaves keep what a power law leaves in a record, but not its fine structure: a line of the
-//! spectrum, a resonance and the edge of a filter look alike in an Allan curve. Densities tell them apart.
+//! spectrum, a resonance and the edge of a filter look alike in an Allan curve. Densities distinguish them.
 //!
 //! Level `i` takes means over blocks of `M = 8^i` samples and estimates their density after Welch (1967, IEEE
 //! Trans. Audio Electroacoust. AU-15, 70): segments of `P` blocks overlap by half, and each is weighted with

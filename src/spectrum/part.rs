@@ -23,7 +23,7 @@ pub trait SpectrumReading: SpectrumPart {
     /// The spectrum of an axis: a [`Spectrum`], which has no bins if none is kept.
     type Spectrum: Clone + Debug + PartialEq;
 
-    /// The spectrum at this moment, beside the curve of the same samples.
+    /// The spectrum at this moment, of the same samples as the curve.
     #[doc(hidden)]
     fn spectrum<const OCTAVES: usize>(
         sums: &Self::Sums,

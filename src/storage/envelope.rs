@@ -1,5 +1,5 @@
-//! The envelope around everything that is stored. It tells the kind and the length of the content, and a
-//! checksum tells whether the content is intact.
+//! The envelope around everything that is stored. It states the kind and the length of the content, and a
+//! checksum shows whether the content is intact.
 //!
 //! | offset | bytes | content |
 //! |---|---|---|

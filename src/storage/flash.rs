@@ -18,8 +18,8 @@ use sequential_storage::{
 /// the snapshots that are the newest of their axis. A word whose write was interrupted is overwritten
 /// with zeros, which flash with error correction allows too.
 ///
-/// A snapshot that is longer than [`PIECE`](Self::PIECE), a third of a page, is stored in pieces, beside those of the
-/// snapshot before it: the last thing that is written tells which of the two counts. So the range must have as many
+/// A snapshot that is longer than [`PIECE`](Self::PIECE), a third of a page, is stored in pieces, next to those of the
+/// snapshot before it: the last write decides which of the two counts. The range must therefore have as many
 /// pages as [`pages`](Self::pages) says.
 ///
 /// # Damage

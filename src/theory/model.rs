@@ -24,7 +24,7 @@ pub struct Term {
     /// of freedom, and widens the intervals of the coefficients.
     pub fitted: bool,
     /// Whether the coefficient is held at zero, because a fitted shape could take its place and the
-    /// curve does not tell the two apart.
+    /// curve does not distinguish the two.
     pub pinned: bool,
 }
 

@@ -47,7 +47,9 @@ fn the_effects_of_python_are_those_of_the_catalogue() {
         committed == made,
         "{PATH} is out of date: {RENEW}=1 cargo test --test library python_effects"
     );
-    assert!(HEAD.contains(&format!("{RENEW}=1 cargo test --test library python_effects")));
+    assert!(HEAD.contains(&format!(
+        "{RENEW}=1 cargo test --test library python_effects"
+    )));
 }
 
 /// The file of Python with these effects. `source` gives the text of the file of an effect.

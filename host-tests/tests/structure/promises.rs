@@ -2,7 +2,7 @@
 
 use std::{collections::BTreeSet, fs, path::Path};
 
-const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
+const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
 const TABLE: &str = "host-tests/doc/promises.md";
 const README: &str = "README.md";
 const CRATE_PAGE: &str = "src/lib.rs";
@@ -69,8 +69,16 @@ fn complaint(name: &str, may_be_thorough: bool) -> Option<String> {
     let Some(place) = source.find(&format!("{keyword} {function}(")) else {
         return Some(format!("{file} has no test {function}"));
     };
-    let is_thorough = file.contains("/thorough/") || source[..place].contains("mod thorough {");
+    let is_thorough =
+        file.contains("/thorough/") || module_of(&source[..place]).contains("mod thorough {");
     (is_thorough && !may_be_thorough).then(|| format!("only --all runs {function}"))
+}
+
+/// The text from the last declaration of a module at the left margin, or the end of the last one, to the end.
+fn module_of(before: &str) -> &str {
+    let begun = before.rfind("\nmod ").unwrap_or(0);
+    let ended = before.rfind("\n}\n").unwrap_or(0);
+    &before[begun.max(ended)..]
 }
 
 /// Whether a source of the chores names a stage; the names of fuzz targets and studies are parts of those of their stages.
@@ -112,13 +120,19 @@ fn parts(page: &str) -> Vec<String> {
             goals.split("\n* ").skip(1).map(joined).collect()
         }
         None => {
-            let comment = page.lines().filter(|line| line.starts_with("//!"));
-            let comment: Vec<&str> = comment.collect();
-            let comment = comment.join("\n");
-            let sections = comment.split("\n//! # ").skip(1);
-            // A line that an example hides begins in the same way.
-            let sections = sections.filter(|section| section.starts_with(char::is_uppercase));
-            sections.map(joined).collect()
+            let lines = page.lines().filter(|line| line.starts_with("//!"));
+            let mut sections: Vec<String> = Vec::new();
+            for line in lines {
+                // A line that an example hides begins in the same way as a title.
+                let title = line.strip_prefix("//! # ");
+                if title.is_some_and(|title| !title.contains(['(', '{', '=', ';', '}'])) {
+                    sections.push(String::new());
+                }
+                if let Some(section) = sections.last_mut() {
+                    *section += &format!("{line}\n");
+                }
+            }
+            sections.iter().map(|section| joined(section)).collect()
         }
     }
 }

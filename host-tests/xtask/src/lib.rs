@@ -9,6 +9,7 @@ pub mod cost;
 mod dist;
 mod fleet;
 mod fuzz;
+mod hooks;
 mod miri;
 pub mod page;
 mod python;
@@ -47,8 +48,7 @@ enum Task {
         #[arg(long)]
         all: bool,
     },
-    /// Run a study behind the README's figures: theory, coefficients, efficiency, calibration, paper,
-    /// hidden-effect, confusion, detection, lines, clean, course, thermal, self-test, speed, precision, peers or long.
+    /// Run a study behind the figures of the pages: `cargo xtask study help` lists them.
     Study {
         /// The study and its options; `--help` lists them.
         #[arg(trailing_var_arg = true, allow_hyphen_values = true, required = true)]

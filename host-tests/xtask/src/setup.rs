@@ -32,7 +32,7 @@ pub(crate) fn run() -> Result<()> {
     for (name, package) in PROGRAMS {
         program(name, package)?;
     }
-    Ok(())
+    crate::hooks::activate()
 }
 
 /// Installs a compiler for every core, in the first way that works.

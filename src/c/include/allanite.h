@@ -163,7 +163,7 @@ enum AllaniteStatus
   ALLANITE_STATUS_TOO_SHORT = 7,
   // An octave has no noise: the counts do not change.
   ALLANITE_STATUS_NO_NOISE = 8,
-  // The effects of a model cannot be told apart.
+  // The effects of a model cannot be distinguished.
   ALLANITE_STATUS_SINGULAR = 9,
   // A buffer is too small.
   ALLANITE_STATUS_BUFFER_TOO_SMALL = 10,
@@ -699,8 +699,8 @@ AllaniteStatus allanite_certificate_add(AllaniteCertificate *certificate,
 #endif
 
 #if defined(ALLANITE_WHOLE)
-// Writes a certificate to a buffer of `ALLANITE_CERTIFICATE_BYTES`. `written` tells how
-// many of them it took. `allanite decode` reads them on a workstation.
+// Writes a certificate to a buffer of `ALLANITE_CERTIFICATE_BYTES`. `written` is set to their
+// number. `allanite decode` reads them on a workstation.
 //
 // # Safety
 // `certificate` is null, or points to an `AllaniteCertificate`; `buffer` is null, or points to `capacity` bytes; `written`
@@ -721,8 +721,8 @@ AllaniteStatus allanite_diagnosis_begin(AllaniteDiagnosis *diagnosis, size_t byt
 #endif
 
 #if defined(ALLANITE_WHOLE)
-// Works until the next step of a diagnosis and tells what it has led to. That takes long;
-// `allanite_diagnosis_advance_with` pauses meanwhile. After the end, it tells the verdict again.
+// Works until the next step of a diagnosis and returns what it has led to. That takes long;
+// `allanite_diagnosis_advance_with` pauses meanwhile. After the end, it returns the verdict again.
 //
 // # Safety
 // `diagnosis` is null, or points to an `AllaniteDiagnosis`; `progress` is null, or points to an `AllaniteProgress`.
@@ -832,7 +832,7 @@ AllaniteStatus allanite_gyro_lost(AllaniteGyro *gyro, uint64_t samples);
 #endif
 
 #if defined(ALLANITE_WHOLE)
-// Does a part of the spectra's work that waits, for a main loop with nothing else to do. `more` tells whether there is
+// Does a part of the spectra's work that waits, for a main loop with nothing else to do. `more` says whether there is
 // more; it may be null.
 //
 // # Safety
@@ -921,7 +921,7 @@ AllaniteStatus allanite_look_begin(AllaniteLook *look,
 #endif
 
 #if defined(ALLANITE_WHOLE)
-// Does one piece of a look, at most 2 million instructions on a Cortex-M4F. `complete` tells whether it was the last.
+// Does one piece of a look, at most 2 million instructions on a Cortex-M4F. `complete` says whether it was the last.
 //
 // # Safety
 // `look` is null, or points to an `AllaniteLook`; `complete` is null, or points to a `bool`.
@@ -929,7 +929,7 @@ AllaniteStatus allanite_look_advance(AllaniteLook *look, bool *complete);
 #endif
 
 #if defined(ALLANITE_WHOLE)
-// Takes up a look, and tells how the self-test stands. What the look still lacks is done at once. A look that another
+// Takes up a look, and returns the state of the self-test. What the look still lacks is done at once. A look that another
 // self-test began is refused, and so is one that was concluded before.
 //
 // # Safety
@@ -939,7 +939,7 @@ AllaniteStatus allanite_look_conclude(AllaniteSelfTest *test, AllaniteLook *look
 
 #if defined(ALLANITE_WHOLE)
 // Writes a snapshot of the record and of a self-test, which may be null, to a buffer of
-// `ALLANITE_SNAPSHOT_BYTES`. `written` tells how many of them it took.
+// `ALLANITE_SNAPSHOT_BYTES`. `written` is set to the number of those that it took.
 //
 // # Safety
 // `gyro` is null, or points to an `AllaniteGyro`; `test` is null, or points to an `AllaniteSelfTest`; `buffer` is null, or

@@ -107,8 +107,8 @@ pub unsafe extern "C" fn allanite_certificate_add(
     }
 }
 
-/// Writes a certificate to a buffer of `ALLANITE_CERTIFICATE_BYTES`. `written` tells how
-/// many of them it took. `allanite decode` reads them on a workstation.
+/// Writes a certificate to a buffer of `ALLANITE_CERTIFICATE_BYTES`. `written` is set to their
+/// number. `allanite decode` reads them on a workstation.
 ///
 /// # Safety
 /// `certificate` is null, or points to an `AllaniteCertificate`; `buffer` is null, or points to `capacity` bytes; `written`

@@ -105,8 +105,8 @@ pub unsafe extern "C" fn allanite_diagnosis_begin(
     status(unsafe { memory::make(diagnosis, bytes, begun) })
 }
 
-/// Works until the next step of a diagnosis and tells what it has led to. That takes long;
-/// `allanite_diagnosis_advance_with` pauses meanwhile. After the end, it tells the verdict again.
+/// Works until the next step of a diagnosis and returns what it has led to. That takes long;
+/// `allanite_diagnosis_advance_with` pauses meanwhile. After the end, it returns the verdict again.
 ///
 /// # Safety
 /// `diagnosis` is null, or points to an `AllaniteDiagnosis`; `progress` is null, or points to an `AllaniteProgress`.

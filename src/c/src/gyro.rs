@@ -91,7 +91,7 @@ pub unsafe extern "C" fn allanite_gyro_lost(
     status(unsafe { get_mut(gyro) }.map(|gyro| gyro.lost(samples)))
 }
 
-/// Does a part of the spectra's work that waits, for a main loop with nothing else to do. `more` tells whether there is
+/// Does a part of the spectra's work that waits, for a main loop with nothing else to do. `more` says whether there is
 /// more; it may be null.
 ///
 /// # Safety

@@ -281,7 +281,7 @@ pub unsafe extern "C" fn allanite_look_begin(
     status(unsafe { memory::make(look, bytes, begun) })
 }
 
-/// Does one piece of a look, at most 2 million instructions on a Cortex-M4F. `complete` tells whether it was the last.
+/// Does one piece of a look, at most 2 million instructions on a Cortex-M4F. `complete` says whether it was the last.
 ///
 /// # Safety
 /// `look` is null, or points to an `AllaniteLook`; `complete` is null, or points to a `bool`.
@@ -298,7 +298,7 @@ pub unsafe extern "C" fn allanite_look_advance(
     }
 }
 
-/// Takes up a look, and tells how the self-test stands. What the look still lacks is done at once. A look that another
+/// Takes up a look, and returns the state of the self-test. What the look still lacks is done at once. A look that another
 /// self-test began is refused, and so is one that was concluded before.
 ///
 /// # Safety

@@ -10,7 +10,7 @@ use crate::{
 use allanite::self_test::SelfTest;
 
 /// Writes a snapshot of the record and of a self-test, which may be null, to a buffer of
-/// `ALLANITE_SNAPSHOT_BYTES`. `written` tells how many of them it took.
+/// `ALLANITE_SNAPSHOT_BYTES`. `written` is set to the number of those that it took.
 ///
 /// # Safety
 /// `gyro` is null, or points to an `AllaniteGyro`; `test` is null, or points to an `AllaniteSelfTest`; `buffer` is null, or

@@ -25,7 +25,7 @@ pub enum AllaniteStatus {
     TooShort = 7,
     /// An octave has no noise: the counts do not change.
     NoNoise = 8,
-    /// The effects of a model cannot be told apart.
+    /// The effects of a model cannot be distinguished.
     Singular = 9,
     /// A buffer is too small.
     BufferTooSmall = 10,

@@ -1,4 +1,4 @@
-//! One more effect beside a hypothesis: a line, a resonance, or noise.
+//! Adds one more effect to a hypothesis: a line, a resonance, or noise.
 
 use super::{
     hypothesis::Hypothesis,
@@ -19,7 +19,7 @@ use crate::{
 use core::ops::ControlFlow;
 use heapless::Vec;
 
-/// A candidate that gains less beside a hypothesis, with all else fixed, is not refined.
+/// A candidate that gains less in a hypothesis, with all else fixed, is not refined.
 const LEAST_GAIN: Real = 6.0;
 /// What a drift has to gain before it is kept.
 const DRIFTED: Real = 4.0;

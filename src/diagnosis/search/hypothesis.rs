@@ -14,13 +14,13 @@ use crate::{
 };
 use heapless::Vec;
 
-/// The largest number of effects beside a filter.
+/// The largest number of effects in addition to a filter.
 pub(crate) const MAX_ADDED: usize = 3;
 
 /// A hypothesis of as many effects whose score is less than this above that of the best one is as good.
 pub(super) const AS_GOOD: Real = 2.0;
 
-/// The effects beside a filter.
+/// The effects in addition to a filter.
 pub(crate) type Added = Vec<Term, MAX_ADDED>;
 
 /// A story of the whole record. The terms that every hypothesis has, such as flicker noise, are not repeated in it.

@@ -1,4 +1,4 @@
-//! The kinds of effects, as their descriptions tell them.
+//! The kinds of effects, according to their descriptions.
 
 pub(crate) use crate::theory::model::is_white;
 
@@ -49,7 +49,7 @@ pub(crate) fn is_filter(effect: &dyn Effect) -> bool {
 }
 
 /// Whether an effect adds to the noise, and a search can find it: it is no filter, and has a shape. One that takes the
-/// place of another term, as a power law that of flicker noise, is sought beside that term. An effect with the same Allan variance as another one is told from it afterwards.
+/// place of another term, as a power law that of flicker noise, is sought in addition to that term. An effect with the same Allan variance as another one is distinguished from it afterwards.
 pub(super) fn is_added(effect: &'static dyn Effect) -> bool {
     !is_filter(effect) && effect.mirror().is_none() && !effect.parameters().is_empty()
 }

@@ -237,7 +237,7 @@ impl<const B: usize> Workspace<B> {
     }
 
     /// What the columns and the slopes follow of expected values: the squares of their best fit, and the rest. The weights
-    /// are those of the present model. `None` if the columns cannot be told apart.
+    /// are those of the present model. `None` if the columns cannot be distinguished.
     #[inline(never)]
     pub(crate) fn followed(&mut self, with: &Values<B>) -> Option<(Vector, Values<B>)> {
         let shift: Vec<Real, MAX_SHAPE> = crate::list::fill(self.slopes.iter().map(|_| FOLLOWS));
@@ -260,7 +260,7 @@ impl<const B: usize> Workspace<B> {
         Some((squares, rest))
     }
 
-    /// `−2 ln L` of expected values beside their best fit, less that of the values themselves: `2 Σ ν (x/m − 1 − ln x/m)`.
+    /// `−2 ln L` of expected values at their best fit, less that of the values themselves: `2 Σ ν (x/m − 1 − ln x/m)`.
     #[inline(never)]
     pub(crate) fn refitted(&mut self, with: &Values<B>) -> Real {
         let (model, mut least) = (self.model, Real::INFINITY);

@@ -3,7 +3,7 @@
 //! A [`Hypothesis`] says what the white noise went through, and what adds to it. The search goes the way of an engineer,
 //! who looks at the continuum first and at the peaks next, and keeps two or three stories in mind until the end:
 //!
-//! 1. *Start*: every filter at its best shape, narrow peaks left out, without and with slow noise beside it.
+//! 1. *Start*: every filter at its best shape, narrow peaks left out, without and with slow noise.
 //! 2. *Grow*: each hypothesis of the beam gets one more line, resonance or other noise, and all shapes are refined together.
 //! 3. *Cross*: the best sets of additions are tried behind every other filter too.
 //! 4. *Prune*: what is not worth its parameters goes.

@@ -1,4 +1,4 @@
-//! The order in which the effects of a hypothesis are told.
+//! The order in which the effects of a hypothesis are reported.
 
 use super::{
     hypothesis::{Added, Hypothesis, MAX_ADDED},

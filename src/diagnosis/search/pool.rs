@@ -11,7 +11,7 @@ const SAME: Real = 0.1;
 const SAME_FILTER: usize = 3;
 const SAME_ADDITIONS: usize = 2;
 
-/// Whether two hypotheses tell similar stories.
+/// Whether two hypotheses are similar.
 type Alike = fn(&Hypothesis, &Hypothesis) -> bool;
 
 /// The best hypotheses, best first. Few of them share a filter or what they add, so that different stories stay.

@@ -27,7 +27,7 @@ const FAST: Real = 20.0;
 const FILTER: Real = 12.0;
 /// A filter that has another one as its special case has to lead over it.
 const SPECIAL_FILTER: Real = 13.5;
-/// Several equal stages imitate one pole at the sample rate, which is told first.
+/// Several equal stages imitate one pole at the sample rate, which is preferred.
 const STAGES: Real = 15.0;
 /// A filter of two shapes has more places, and one that imitates others has to lead over them.
 const SHAPED_FILTER: Real = 14.0;
@@ -36,7 +36,7 @@ const SHAPED_SPECIAL_FILTER: Real = 18.0;
 /// The threshold at which the prices are those above. Another threshold changes all of them by as much.
 pub(crate) const THRESHOLD: Real = 8.0;
 
-/// The price of an effect, beside samples that lie `interval_s` seconds apart, in a record with a spectrum or without.
+/// The price of an effect, for samples that are `interval_s` seconds apart, in a record with a spectrum or without.
 pub(crate) fn price(term: &Term, interval_s: Real, threshold: Real, has_bins: bool) -> Real {
     usual(term, interval_s, has_bins) + threshold - THRESHOLD
 }

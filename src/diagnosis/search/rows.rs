@@ -24,7 +24,7 @@ const PER_CLUSTER: Real = 1.2;
 /// Neighbouring octaves scatter together: `1 + 2 (0.6 + 0.2)` of them count as one, for noise between white and flicker.
 const OCTAVES_TOGETHER: Real = 2.6;
 
-/// The surcharge of octaves alone: with it, one in 200 clean records is told of an effect.
+/// The surcharge of octaves alone: with it, an effect is reported in one of 200 clean records.
 const OCTAVES_ALONE: Real = 4.0;
 
 /// The share of a density by which no model is believed to be true, which is added to its relative error. Chosen by hand:
@@ -237,7 +237,7 @@ impl<'a, const B: usize> Observation<'a, B> {
         if self.has_bins() { 0.0 } else { OCTAVES_ALONE }
     }
 
-    /// The variance of a sum over rows beside a row, relative to that of rows that are independent.
+    /// The variance of a sum over rows near a row, relative to that of rows that are independent.
     pub(crate) fn overlap(&self, row: usize) -> Real {
         match &self.low {
             Low::Octaves(_) if row < LOW => OCTAVES_TOGETHER,

@@ -49,7 +49,7 @@ const PRUNED: usize = 5;
 /// The lead in cost that an effect needs over its own special case.
 const OVER_SPECIAL_CASE: Real = 5.0;
 
-/// The alternatives that are told.
+/// The alternatives that are reported.
 pub(crate) const MAX_ALTERNATIVES: usize = 6;
 
 /// What a search found: the best hypothesis, and those that explain the record about as well, with their costs beyond it.
@@ -297,7 +297,7 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
     }
 }
 
-/// The best shape of an effect beside a model. A whole number above zero is kept. `None` if no shape adds anything.
+/// The best shape of an effect that is added to a model. A whole number above zero is kept. `None` if no shape adds anything.
 pub(crate) fn best_shape_of<const B: usize>(
     observation: &Observation<'_, B>,
     model: &Model,

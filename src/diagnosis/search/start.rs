@@ -138,7 +138,7 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
         self.best_of(&mut filters, &Added::new())
     }
 
-    /// The best of these filters, beside what is added.
+    /// The best of these filters, given what is added.
     fn best_of(
         &mut self,
         filters: &mut dyn Iterator<Item = Term>,

@@ -87,7 +87,7 @@ fn response(u: Real) -> Real {
 }
 
 /// The spectral density of the noise at `πfτ = 1`, in units of `σ²τ`, for octave `k` of `0 … last`. It is 1 for white
-/// noise, `π/(4 ln 2)` for flicker noise and `3/4` for a random walk. The slope of the curve tells the mixture, and
+/// noise, `π/(4 ln 2)` for flicker noise and `3/4` for a random walk. The slope of the curve shows the mixture, and
 /// the density goes with it along a parabola. Noise that falls faster than white noise is taken for white.
 fn density(k: usize, last: usize, noise: &dyn Fn(usize) -> Real) -> Real {
     let (before, after) = (k.saturating_sub(1), k.saturating_add(1).min(last));

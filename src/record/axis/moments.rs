@@ -4,7 +4,7 @@
 use crate::record::fourth_moments::FourthMoments;
 use core::fmt::Debug;
 
-/// Sums fourth powers, which tell jumps from Gaussian noise: `M` of [`Axes`](super::Axes).
+/// Sums fourth powers, which distinguish jumps from Gaussian noise: `M` of [`Axes`](super::Axes).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Moments;
 

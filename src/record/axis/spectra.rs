@@ -1,4 +1,4 @@
-//! The place of a spectrum beside the sums of an axis. A type may leave it out: then it takes no memory, no flash and no
+//! The spectrum among the sums of an axis. A type may leave it out: then it takes no memory, no flash and no
 //! time.
 
 use core::fmt::Debug;
@@ -25,7 +25,7 @@ pub trait SpectrumSums: Clone + Debug + PartialEq + Eq {
     /// Adds a count.
     fn push(&mut self, count: i32);
 
-    /// Does a part of the work that waits, and tells whether there is more.
+    /// Does a part of the pending work, and returns whether there is more.
     fn advance(&mut self) -> bool;
 
     /// Whether half of the room, or all of it, is taken by counts that wait to be worked on.

@@ -1,4 +1,4 @@
-//! How often the largest and the smallest value occur, beside their neighbours.
+//! How often the largest and the smallest value occur, compared with their neighbours.
 
 /// One end of a record's range. The lower one is that of the values with the opposite sign.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -1,4 +1,4 @@
-//! Zeros, and the hole that a dead band leaves beside them.
+//! Zeros, and the hole that a dead band leaves next to them.
 
 use super::steps::Steps;
 

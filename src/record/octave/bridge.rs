@@ -2,7 +2,7 @@
 //!
 //! A gap ends every octave, and the longest one needs the longest record without gaps. So a few losses would take all the
 //! long octaves away. [`Accumulator::lost`] therefore goes on with the mean of 32 samples in front of the gap, up to 64
-//! times. Differences of clusters that are short beside the gap are left out if they touch it. In longer clusters, a
+//! times. Differences of clusters that are short compared with the gap are left out if they touch it. In longer clusters, a
 //! filled value counts for little, and the [curve](crate::Curve) takes off what it adds or takes away.
 
 use super::{

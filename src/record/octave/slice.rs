@@ -91,7 +91,7 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
         true
     }
 
-    /// Adds a batch in the way that suits it. If none does, it does nothing and returns `false`. `is_far` tells whether
+    /// Adds a batch in the way that suits it. If none does, it does nothing and returns `false`. `is_far` says whether
     /// the last batch had angles that are too far apart for 32 bits, so that this one probably has them, too.
     #[inline(always)]
     fn push_any_batch(&mut self, counts: &[i32; BATCH], is_far: &mut bool) -> bool {

@@ -1,7 +1,7 @@
 //! Batches of counts whose angles are too far apart for 32 bits, such as floats that were rounded far below their noise.
 //!
 //! The angles are kept in two halves, so that a vector holds four of them. The lower half is enough for a second
-//! difference within ±2^31, and the upper half tells whether it is.
+//! difference within ±2^31, and the upper half shows whether it is.
 
 use super::{
     Accumulator, FIRST, RING,

@@ -1,4 +1,4 @@
-//! The part of a certificate that tells what a diagnosis found besides the terms of its model.
+//! The findings of a diagnosis in a certificate, besides the terms of its model.
 
 use super::EffectCode;
 use crate::{
@@ -105,7 +105,7 @@ pub enum CertifiedWhat {
 }
 
 impl Findings {
-    /// Whether there is nothing to tell.
+    /// Whether there are no findings.
     pub fn is_empty(&self) -> bool {
         *self == Self::default()
     }
@@ -149,7 +149,7 @@ impl Findings {
     }
 }
 
-/// The slopes of a covariate, and of the one that acts beside it.
+/// The slopes of a covariate, and of a second one that acts as well.
 fn slopes(followed: &FollowedCovariate) -> impl Iterator<Item = CertifiedSlope> {
     let own = (followed.index, followed.slope);
     let beside = followed.beside.map(|beside| (beside.index, beside.slope));

@@ -33,7 +33,7 @@
 //! | – number of doubts up to 12; for each: code of an effect of the model, and of one that explains as much | u8, 2 × u8 |
 //! | – number of bands of the spectrum up to 3; for each: lowest and highest frequency in Hz, standard errors | u8, 3 × f32 |
 //! | – 0 without a course; else 1, and the number of events up to 8; for each of them: | u8, u8 |
-//! | – – kind: 0 noise change, 1 bursts and blocks (u8), 2 step, 3 warm-up and time constant in s (f32) | u8, and as told |
+//! | – – kind: 0 noise change, 1 bursts and blocks (u8), 2 step, 3 warm-up and time constant in s (f32) | u8, and as listed |
 //! | – – time in s, size, lower, upper, standard errors | 5 × f32 |
 //!
 //! Version 2 ends an axis with the limits of detection, and version 1 with the correlations. A certificate is written
@@ -44,7 +44,7 @@
 //! sent u64), 5 left out (left out u64, samples u64), 6 repeated (times u8, changes u64, samples u64), 7 coarse
 //! (per mille u16) or 8 dead band (zeros u64, samples u64).
 //!
-//! Every number is checked when a certificate is read, by itself and beside the others: intervals contain their values,
+//! Every number is checked when a certificate is read, by itself and against the others: intervals contain their values,
 //! a doubt is one about an effect of the model, bands lie below half of the sample rate, and events within the duration.
 
 mod axis;

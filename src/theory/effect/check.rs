@@ -1,4 +1,4 @@
-//! What an effect of a user's own gets wrong most often, for a unit test beside it.
+//! Checks a user's own effect for the most frequent mistakes, in a unit test.
 
 use super::{CATALOGUE, CODES, Effect, FIRST_OWN_CODE, MAX_PARAMETERS, SampledShape};
 use crate::{
@@ -94,7 +94,7 @@ impl fmt::Display for Flaw {
 
 impl core::error::Error for Flaw {}
 
-/// Checks an effect of one's own, for a unit test beside it: name, code and ranges, that variances are numbers, that they are
+/// Checks a user's own effect, in a unit test: name, code and ranges, that variances are numbers, that they are
 /// those of the kernel, and that they scale with time as the unit of the coefficient says. Effects of the catalogue pass. An
 /// effect may pass and be wrong.
 ///

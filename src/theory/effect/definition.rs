@@ -8,8 +8,8 @@ use core::fmt;
 /// The name of an effect and its relations to others: everything about it except its mathematics.
 ///
 /// Each effect has one static of this type, at one address. The format of certificates, the command line, the search for
-/// shapes, the simulator and the reports read it, so that none of them needs to know any effect by
-/// name.
+/// shapes and the reports read it, and name no effect. Only the simulator names some: the digital filters that it runs
+/// sample by sample.
 pub struct Description {
     /// The name in files and on the command line: lower case with underscores, such as
     /// `angle_random_walk`. No two effects share a name.
@@ -35,11 +35,11 @@ pub struct Description {
     /// The effect whose place this one takes in a model: a filter on white noise takes that of the
     /// angle random walk.
     pub replaces: Option<&'static dyn Effect>,
-    /// The effect that has the same Allan variance. A curve cannot tell the two apart, so that a
+    /// The effect that has the same Allan variance. A curve cannot distinguish the two, and a
     /// diagnosis searches for the mirrored effect only and lets the kurtosis decide between them.
     pub mirror: Option<&'static dyn Effect>,
     /// The simpler effect that this one becomes at the end of its range: a resonance that is too narrow to
-    /// be resolved is a sinusoid. Where the data do not tell the two apart, the simpler one is named.
+    /// be resolved is a sinusoid. Where the data do not distinguish the two, the simpler one is named.
     pub special_case: Option<&'static dyn Effect>,
     /// The distribution of the values, which the kernel does not determine.
     pub distribution: Distribution,
@@ -135,7 +135,7 @@ pub struct Reciprocal {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Response {
     /// Root-mean-square of a difference, times τ, in seconds times the rate unit per unit of the
-    /// coefficient. The sign tells two differences in phase from two in opposition.
+    /// coefficient. The sign distinguishes two differences in phase from two in opposition.
     pub amplitude: Real,
     /// Phase from one sample to the next, in radians: 0 for a ramp, whose differences are all the
     /// same.
@@ -149,7 +149,7 @@ pub struct Response {
 pub struct Tail {
     /// The first lag `x` of the tail, in samples.
     pub start: Real,
-    /// The decays. The second one is there only beside a first one.
+    /// The decays. The second one is there only if there is a first one.
     pub decays: [Option<Decay>; 2],
 }
 

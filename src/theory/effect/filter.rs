@@ -32,7 +32,7 @@ pub(super) struct Output {
 }
 
 impl Output {
-    /// The noise of poles beside a share that is white, with a gain of one.
+    /// The noise of poles and a share that is white, with a gain of one.
     pub(super) fn new(white: Real, first: Pole, second: Option<Pole>) -> Self {
         Self {
             white,

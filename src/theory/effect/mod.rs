@@ -6,7 +6,7 @@
 //! differences of second differences of `G`. These remove a constant and a multiple of `n²` from `G`, so
 //! that `G` exists even for an effect whose autocovariance does not.
 //!
-//! A new effect takes one file beside the others and one line in the catalogue below. The file
+//! A new effect takes one file in this folder and one line in the catalogue below. The file
 //! defines the type, its [`Effect`], its [`Explain`] and a static `DESCRIPTION`. If the rate is a stationary
 //! process that the shape determines, such as white noise behind a filter, the file names the process in the
 //! place of the [`Effect`]. The package for Python has a class of it, which

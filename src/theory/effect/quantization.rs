@@ -8,7 +8,7 @@ use crate::{numerics::real::Real, theory::lattice::SecondDifferences};
 #[derive(Clone, Copy, Debug)]
 pub struct Quantization;
 
-/// The lag in samples beyond which a filter is taken to have forgotten: what is left of it is small beside the variance, and
+/// The lag in samples beyond which a filter is taken to have forgotten: what is left of it is small compared with the variance, and
 /// rounding would be larger.
 const FORGOTTEN: Real = 256.0;
 

@@ -11,7 +11,7 @@ use crate::numerics::real::Real;
 ///
 /// The levels lie `2 rms` apart, and the rate stays at one of them for `2 T_c` on average
 /// (Machlup 1954). The autocovariance, and with it the Allan variance, is that of [`GaussMarkov`]
-/// noise, so that only the kurtosis of the differences at `τ ≲ T_c` tells the two apart.
+/// noise, and only the kurtosis of the differences at `τ ≲ T_c` distinguishes the two.
 #[derive(Clone, Copy, Debug)]
 pub struct RandomTelegraph;
 

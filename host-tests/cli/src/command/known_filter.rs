@@ -9,8 +9,8 @@ use clap::Args;
 #[derive(Clone, Debug, Default, Args)]
 pub(crate) struct KnownFilter {
     /// A filter on the white noise that is known from the sensor's data sheet or its settings, such as
-    /// `low_pass:cutoff_hz=42,poles=2` or `decimation_filter:width_s=0.014,stages=2`. It is in the model
-    /// from the start, in the place of the angle random walk, and its shape is not fitted
+    /// `low_pass:cutoff_hz=42,poles=2` or `decimation_filter:width_s=0.014,stages=2`, a CIC. It replaces angle random walk
+    /// in the model from the start, and its shape is not fitted
     #[arg(long, value_name = "FILTER:parameter=value,…")]
     pub(crate) filter: Option<String>,
 }

@@ -24,6 +24,10 @@ use std::{
 };
 
 /// Measure the Allan curves of logs
+///
+/// A curve is the overlapping Allan variance (NIST SP 1065), with a quarter of the overlap, at averaging times of 2^k
+/// samples. The file also has the one-sided power spectral density (PSD, Welch), the block history, and the number of
+/// samples that gap filling replaced.
 #[derive(Debug, Args)]
 #[command(after_help = examples::MEASURE)]
 pub(super) struct Arguments {

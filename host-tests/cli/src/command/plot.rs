@@ -10,8 +10,9 @@ use allanite_log::failure::{Failure, Place};
 use clap::Args;
 use std::{io::Write, path::Path, path::PathBuf};
 
-/// Draw the Allan deviation and the spectrum beside the last model of `diagnose`, with the differences, and the rate
-/// over time
+/// Draw the Allan deviation and the spectrum with the last model of `diagnose`, the differences, and the rate over time
+///
+/// The spectrum is drawn as amplitude spectral density (ASD), the root of the one-sided power spectral density (PSD).
 #[derive(Debug, Args)]
 #[command(after_help = examples::PLOT)]
 pub(super) struct Arguments {

@@ -22,6 +22,8 @@ use std::{
 };
 
 /// Compare a record octave by octave with the five IEEE-952 terms and with effects of your choice
+///
+/// Differences of the Allan deviation and of the power spectral density (PSD) are in standard errors.
 #[derive(Debug, Args)]
 #[command(after_help = examples::COMPARE)]
 pub(super) struct Arguments {

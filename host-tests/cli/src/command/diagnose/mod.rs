@@ -16,6 +16,10 @@ use std::{
 };
 
 /// Find, one by one, the physical effects that are missing from the five IEEE-952 terms
+///
+/// The Allan deviation and the power spectral density (PSD) of a record are searched for lines, resonances, filters (low
+/// pass, notch, and the CIC or boxcar that is called decimation filter here) and correlated noise. Saturation, motion and
+/// faults of the logger are reported first.
 #[derive(Debug, Args)]
 #[command(after_help = examples::DIAGNOSE)]
 pub(super) struct Arguments {

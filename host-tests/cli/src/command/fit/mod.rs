@@ -27,6 +27,10 @@ use std::{
 };
 
 /// Fit the five IEEE-952 coefficients to a log or a curve
+///
+/// In terms of a data sheet, angle random walk N is ARW, or rate noise density. Of an accelerometer, it is velocity
+/// random walk, VRW. In-run bias stability is the minimum of the Allan deviation, which is 0.664 B where bias instability
+/// dominates it. The errors of the octaves include their overlap, for which others use equivalent degrees of freedom, EDF.
 #[derive(Debug, Args)]
 #[command(after_help = examples::FIT)]
 pub(super) struct Arguments {

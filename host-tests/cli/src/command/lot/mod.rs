@@ -40,13 +40,13 @@ const RISK: f64 = 0.025;
 ///
 /// The devices are certificates, curve files and logs, mixed; a log or a curve file is diagnosed first. A device passes a limit
 /// if its coefficient is above the limit with a probability of at most --risk, and fails if it is within the limit with at
-/// most this probability. In between it lies in the guard band, where the record is too short to tell. The exit status is 0
-/// whatever is decided: `fit --limit` tells the decision of one device by its exit status.
+/// most this probability. In between it lies in the guard band, where the record is too short for a decision. The exit status is 0
+/// for any decision: `fit --limit` decides one device by its exit status.
 #[derive(Debug, Args)]
 #[command(after_help = examples::LOT)]
 pub(super) struct Arguments {
     /// Files of one device each, or folders of them: certificates (.bin), curve files (.json) and logs, whose device has the
-    /// name of the file. Axes are told apart by their order
+    /// name of the file. Axes are identified by their order
     #[arg(required = true, value_name = "DEVICE")]
     files: Vec<PathBuf>,
     /// A limit of a coefficient, by its symbol or its name, in the unit of the certificate or in the customary one:

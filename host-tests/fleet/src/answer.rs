@@ -5,7 +5,10 @@ use crate::{
     failure::{raised, refused},
 };
 use allanite::fit::State;
-use allanite_host::interface::{Record, options::{Fitting, Search}};
+use allanite_host::interface::{
+    Record,
+    options::{Fitting, Search},
+};
 use allanite_log::{failure::Failure, pieces::Pieces, unit::Unit};
 use datafusion::{
     arrow::{
@@ -123,7 +126,10 @@ impl Question {
         let axes = [(AXIS.to_owned(), pieces)];
         let unit = Unit::from_name(unit).ok_or_else(|| {
             let names = Unit::ALL.map(Unit::name).join(", ");
-            refused(format!("there is no unit {unit:?}"), &format!("choose from {names}"))
+            refused(
+                format!("there is no unit {unit:?}"),
+                &format!("choose from {names}"),
+            )
         })?;
         let found = Record::of_pieces(&axes, unit).and_then(|record| match self {
             Self::Diagnosis => diagnosed(&record),

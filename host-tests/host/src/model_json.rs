@@ -1,9 +1,8 @@
 //! The parts that the JSON documents of `compare` and `diagnose` share.
 
-use crate::fit;
 use crate::{
     dependence::candidates::{Candidate, Form},
-    units, words,
+    fit, units, words,
 };
 use allanite::{
     Comparison, Model, Term,

@@ -1,8 +1,8 @@
 //! Lines at the limits of a spectrum, and what is said of their origin.
 
-use program::{json, output};
 use allanite_host::simulate::{Preset, Random};
 use allanite_studies::lines::{Said, diagnose, draw, near_half};
+use program::{json, output};
 use rand::{RngExt, SeedableRng};
 use serde_json::{Value, json};
 use std::{f64::consts::TAU, fmt::Write, path::Path};

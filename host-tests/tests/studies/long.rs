@@ -1,7 +1,7 @@
 //! A short run of the study of long records. The figures of the manual come from `cargo xtask study long`.
 
-use program::path;
 use allanite_studies::long::{OCTAVES, Program, Sequence, distributed, growth, merged, slope};
+use program::path;
 
 /// The sum over all starts, from the counts themselves.
 fn definition(counts: &[i32], k: u32) -> (u64, u128) {

@@ -1,9 +1,9 @@
 //! A short run of the study of Lv, Liu, Lai & Huang 2015, and the gyros that it simulates. The figures of the
 //! manual come from `cargo xtask study paper`.
 
-use program::output;
 use allanite_host::simulate::Preset;
 use allanite_studies::paper::{self, Estimates, Gyro};
+use program::output;
 use roxmltree::Document;
 use serde_json::Value;
 use std::{fs, process::Command};

@@ -1,9 +1,9 @@
 //! Records of one, two and three effects, as other people's were: what is said of each, word by word.
 
-use program::json;
 use allanite::Coefficient;
 use allanite_host::simulate::{Coefficients, Hidden, Simulator};
 use allanite_studies::{measured::Measured, said::Said};
+use program::json;
 use std::fs;
 use tempfile::TempDir;
 

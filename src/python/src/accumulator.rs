@@ -1,6 +1,10 @@
 //! Samples that arrive while Python runs.
 
-use crate::{error::raised, options, record::Record};
+use crate::{
+    error::raised,
+    options::{self, Arguments},
+    record::Record,
+};
 use allanite_host::interface::Recording;
 use numpy::PyReadonlyArray1;
 use pyo3::{exceptions::PyValueError, prelude::*};
@@ -13,7 +17,7 @@ pub(crate) struct Accumulator(Mutex<Recording>);
 #[pymethods]
 impl Accumulator {
     #[new]
-    fn new(options: Vec<String>) -> PyResult<Self> {
+    fn new(options: Arguments) -> PyResult<Self> {
         let recording = options::sensor(options)
             .and_then(Recording::new)
             .map_err(raised)?;

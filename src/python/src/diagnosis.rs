@@ -3,7 +3,7 @@
 use crate::{
     comparison::Comparison,
     error::raised,
-    options,
+    options::{self, Arguments},
     own::{self, OwnEffect},
     watched::left,
 };
@@ -44,7 +44,7 @@ impl Diagnosis {
     }
 
     /// The picture of `plot`.
-    fn svg(&self, options: Vec<String>) -> PyResult<String> {
+    fn svg(&self, options: Arguments) -> PyResult<String> {
         let shown = options::shown(options).map_err(raised)?;
         self.0.svg(&shown).map_err(raised)
     }
@@ -54,7 +54,7 @@ impl Diagnosis {
         &self,
         py: Python<'_>,
         axis: String,
-        options: Vec<String>,
+        options: Arguments,
         own: Vec<Py<OwnEffect>>,
     ) -> PyResult<Comparison> {
         let (diagnosis, effects) = (self.0.clone(), own::effects(&own));

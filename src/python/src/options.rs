@@ -1,4 +1,4 @@
-//! The arguments of Python as types: `rate=100` and `unit="deg/s"` arrive as `--rate=100` and `--unit=deg/s`.
+//! The arguments of Python as types: `rate=100` is a number, `unit="deg/s"` a unit, `columns=["gx", "gy"]` a list.
 
 use allanite_host::{
     compare::model::ModelChoice,
@@ -13,40 +13,54 @@ use allanite_log::{
     unit::Unit,
 };
 use clap::ValueEnum;
-use std::{fmt::Display, str::FromStr};
+use pyo3::FromPyObject;
+use std::{collections::BTreeMap, fmt::Display, str::FromStr};
 
-/// The arguments that have not been taken yet, by their names, in their order.
-pub(crate) struct Options {
-    given: Vec<(String, String)>,
+/// The arguments of a call, by the names that options have.
+pub(crate) type Arguments = BTreeMap<String, Given>;
+
+/// A value of an argument.
+#[derive(FromPyObject)]
+pub(crate) enum Given {
+    Flag(bool),
+    Text(String),
+    Number(f64),
+    List(Vec<String>),
+}
+
+/// The arguments that have not been taken yet.
+struct Options {
+    given: Arguments,
     /// The names that were asked for.
     known: Vec<&'static str>,
 }
 
 impl Options {
-    fn new(given: Vec<String>) -> Self {
-        let split = |text: String| {
-            let text = text.trim_start_matches('-');
-            let (name, value) = text.split_once('=').unwrap_or((text, ""));
-            (name.to_owned(), value.to_owned())
-        };
+    const fn new(given: Arguments) -> Self {
         Self {
-            given: given.into_iter().map(split).collect(),
+            given,
             known: Vec::new(),
         }
     }
 
-    /// The values of an argument that may be given several times.
-    fn all(&mut self, name: &'static str) -> Vec<String> {
+    fn take(&mut self, name: &'static str) -> Option<Given> {
         self.known.push(name);
-        let (found, rest) = std::mem::take(&mut self.given)
-            .into_iter()
-            .partition(|(other, _)| other == name);
-        self.given = rest;
-        found.into_iter().map(|(_, value)| value).collect()
+        self.given.remove(name)
+    }
+
+    fn flag(&mut self, name: &'static str) -> bool {
+        matches!(self.take(name), Some(Given::Flag(true)))
+    }
+
+    fn number(&mut self, name: &'static str) -> Result<Option<f64>, Failure> {
+        match self.take(name) {
+            Some(Given::Number(number)) => Ok(Some(number)),
+            other => other.map(|other| parsed(name, &text(other))).transpose(),
+        }
     }
 
     fn text(&mut self, name: &'static str) -> Option<String> {
-        self.all(name).pop()
+        self.take(name).map(text)
     }
 
     fn one<T: FromStr<Err: Display>>(&mut self, name: &'static str) -> Result<Option<T>, Failure> {
@@ -54,14 +68,30 @@ impl Options {
         text.map(|text| parsed(name, &text)).transpose()
     }
 
-    /// Values between commas.
-    fn list<T: FromStr<Err: Display>>(
+    /// The values of an argument: a list, or a text with commas between them.
+    fn texts(&mut self, name: &'static str) -> Option<Vec<String>> {
+        self.take(name).map(|given| match given {
+            Given::List(list) => list,
+            other => text(other).split(',').map(str::to_owned).collect(),
+        })
+    }
+
+    /// The values of an argument whose texts may have commas.
+    fn list(&mut self, name: &'static str) -> Vec<String> {
+        match self.take(name) {
+            None => Vec::new(),
+            Some(Given::List(list)) => list,
+            Some(other) => vec![text(other)],
+        }
+    }
+
+    fn all<T: FromStr<Err: Display>>(
         &mut self,
         name: &'static str,
     ) -> Result<Option<Vec<T>>, Failure> {
-        let text = self.text(name);
-        let list = |text: String| text.split(',').map(|text| parsed(name, text)).collect();
-        text.map(list).transpose()
+        let texts = self.texts(name);
+        let all = |texts: Vec<String>| texts.iter().map(|text| parsed(name, text)).collect();
+        texts.map(all).transpose()
     }
 
     fn choice<T: ValueEnum>(&mut self, name: &'static str) -> Result<Option<T>, Failure> {
@@ -72,9 +102,9 @@ impl Options {
     /// # Errors
     /// When an argument is left that nobody has asked for.
     fn finish(self) -> Result<(), Failure> {
-        match self.given.first() {
+        match self.given.keys().next() {
             None => Ok(()),
-            Some((name, _)) => {
+            Some(name) => {
                 let hint = did_you_mean(name, self.known.iter().copied());
                 let known = self.known.join(", ");
                 Err(Failure::option(
@@ -83,6 +113,16 @@ impl Options {
                 ))
             }
         }
+    }
+}
+
+/// A value as the command line writes it.
+fn text(given: Given) -> String {
+    match given {
+        Given::Flag(flag) => flag.to_string(),
+        Given::Text(text) => text,
+        Given::Number(number) => number.to_string(),
+        Given::List(list) => list.join(","),
     }
 }
 
@@ -108,23 +148,23 @@ fn chosen<T: ValueEnum>(name: &str, text: &str) -> Result<T, Failure> {
 ///
 /// # Errors
 /// When an argument is unknown or its value is not valid; so it is below.
-pub(crate) fn reading(given: Vec<String>) -> Result<Reading, Failure> {
+pub(crate) fn reading(given: Arguments) -> Result<Reading, Failure> {
     let mut options = Options::new(given);
-    let none = !options.all("no-covariates").is_empty();
-    let covariates = match options.list("covariates")? {
+    let none = options.flag("no-covariates");
+    let covariates = match options.all("covariates")? {
         Some(chosen) => Covariates::Chosen(chosen),
         None if none => Covariates::Chosen(Vec::new()),
         None => Covariates::Found,
     };
     let mut drop = Vec::new();
-    for text in options.all("drop") {
+    for text in options.list("drop") {
         drop.push(parsed("drop", &text)?);
     }
     let log = LogOptions {
-        rate_hz: options.one("rate")?,
-        scale: options.one("scale")?,
+        rate_hz: options.number("rate")?,
+        scale: options.number("scale")?,
         unit: options.choice("unit")?,
-        columns: options.list("columns")?,
+        columns: options.all("columns")?,
         sensor: options.choice("sensor")?,
         time: options.text("time"),
         time_unit: options.choice("time-unit")?,
@@ -141,11 +181,11 @@ pub(crate) fn reading(given: Vec<String>) -> Result<Reading, Failure> {
 }
 
 /// How axes are fitted.
-pub(crate) fn fitting(given: Vec<String>) -> Result<Fitting, Failure> {
+pub(crate) fn fitting(given: Arguments) -> Result<Fitting, Failure> {
     let mut options = Options::new(given);
     let fitting = Fitting {
         method: options.choice("method")?.unwrap_or(MethodName::Covariance),
-        limits: LimitArgument::all(&options.all("limit"))?,
+        limits: LimitArgument::all(&options.list("limit"))?,
         filter: options.text("filter"),
     };
     options.finish()?;
@@ -153,7 +193,7 @@ pub(crate) fn fitting(given: Vec<String>) -> Result<Fitting, Failure> {
 }
 
 /// How effects are searched for.
-pub(crate) fn search(given: Vec<String>) -> Result<Search, Failure> {
+pub(crate) fn search(given: Arguments) -> Result<Search, Failure> {
     let mut options = Options::new(given);
     let search = Search {
         max_effects: options.one("max-effects")?,
@@ -164,11 +204,11 @@ pub(crate) fn search(given: Vec<String>) -> Result<Search, Failure> {
 }
 
 /// The model that a record is compared with.
-pub(crate) fn model(given: Vec<String>) -> Result<ModelChoice, Failure> {
+pub(crate) fn model(given: Arguments) -> Result<ModelChoice, Failure> {
     let mut options = Options::new(given);
     let choice = ModelChoice {
-        with: options.all("with"),
-        without: options.all("without"),
+        with: options.list("with"),
+        without: options.list("without"),
         filter: options.text("filter"),
     };
     options.finish()?;
@@ -176,10 +216,10 @@ pub(crate) fn model(given: Vec<String>) -> Result<ModelChoice, Failure> {
 }
 
 /// What is drawn of a diagnosis.
-pub(crate) fn shown(given: Vec<String>) -> Result<Shown, Failure> {
+pub(crate) fn shown(given: Arguments) -> Result<Shown, Failure> {
     let mut options = Options::new(given);
-    let what = options.text("what");
-    let what = what.iter().flat_map(|text| text.split(','));
+    let what = options.texts("what").unwrap_or_default();
+    let what = what.iter().map(String::as_str);
     let shown = Shown {
         axis: options.text("axis"),
         step: options.one("step")?,
@@ -192,7 +232,7 @@ pub(crate) fn shown(given: Vec<String>) -> Result<Shown, Failure> {
 }
 
 /// The unit of axes that were read in pieces.
-pub(crate) fn unit(given: Vec<String>) -> Result<Unit, Failure> {
+pub(crate) fn unit(given: Arguments) -> Result<Unit, Failure> {
     let mut options = Options::new(given);
     let unit = options.choice("unit")?;
     options.finish()?;
@@ -200,16 +240,16 @@ pub(crate) fn unit(given: Vec<String>) -> Result<Unit, Failure> {
 }
 
 /// What is known of samples in memory.
-pub(crate) fn sensor(given: Vec<String>) -> Result<Sensor, Failure> {
+pub(crate) fn sensor(given: Arguments) -> Result<Sensor, Failure> {
     let mut options = Options::new(given);
     let sensor = Sensor {
         rate_hz: options
-            .one("rate")?
+            .number("rate")?
             .ok_or_else(|| Failure::option("the rate is not known", "give it with --rate"))?,
-        rate_per_count: options.one("scale")?.unwrap_or(1.0),
+        rate_per_count: options.number("scale")?.unwrap_or(1.0),
         unit: options.choice("unit")?.unwrap_or(Unit::DegreesPerSecond),
         axes: options
-            .list("axes")?
+            .texts("axes")
             .unwrap_or_else(|| vec!["gyro".to_owned()]),
     };
     options.finish()?;

@@ -1,6 +1,10 @@
 //! Records that are read in pieces.
 
-use crate::{error::raised, options, record::Record};
+use crate::{
+    error::raised,
+    options::{self, Arguments},
+    record::Record,
+};
 use allanite_host::interface;
 use allanite_log::pieces::{Gathered, Pieces as State};
 use numpy::PyReadonlyArray1;
@@ -79,7 +83,7 @@ impl Pieces {
     fn record(
         py: Python<'_>,
         axes: Vec<(String, Py<Pieces>)>,
-        options: Vec<String>,
+        options: Arguments,
     ) -> PyResult<Record> {
         let unit = options::unit(options).map_err(raised)?;
         let record = py.detach(|| {

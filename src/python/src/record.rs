@@ -5,7 +5,7 @@ use crate::{
     comparison::Comparison,
     diagnosis::Diagnosis,
     error::raised,
-    options,
+    options::{self, Arguments},
     own::{self, OwnEffect},
     table::Batches,
     watched::{left, watched},
@@ -29,7 +29,7 @@ impl Record {
     fn read(
         py: Python<'_>,
         path: PathBuf,
-        options: Vec<String>,
+        options: Arguments,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Self> {
         let reading = options::reading(options).map_err(raised)?;
@@ -45,7 +45,7 @@ impl Record {
         py: Python<'_>,
         name: &str,
         columns: Vec<(String, Bound<'_, PyAny>)>,
-        options: Vec<String>,
+        options: Arguments,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Self> {
         let lent = columns.into_iter().map(Lent::of);
@@ -61,7 +61,7 @@ impl Record {
         py: Python<'_>,
         name: &str,
         table: &Bound<'_, PyAny>,
-        options: Vec<String>,
+        options: Arguments,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Self> {
         let batches = Batches::of(table)?;
@@ -80,7 +80,7 @@ impl Record {
     }
 
     /// The document and the text of `fit`.
-    fn fit(&self, py: Python<'_>, options: Vec<String>) -> PyResult<(String, String)> {
+    fn fit(&self, py: Python<'_>, options: Arguments) -> PyResult<(String, String)> {
         let record = self.0.clone();
         let fitting = options::fitting(options).map_err(raised)?;
         left(py, None, move |_| {
@@ -93,7 +93,7 @@ impl Record {
     fn diagnose(
         &self,
         py: Python<'_>,
-        options: Vec<String>,
+        options: Arguments,
         axes: u64,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Diagnosis> {
@@ -114,7 +114,7 @@ impl Record {
         &self,
         py: Python<'_>,
         axis: String,
-        options: Vec<String>,
+        options: Arguments,
         own: Vec<Py<OwnEffect>>,
     ) -> PyResult<Comparison> {
         let (record, effects) = (self.0.clone(), own::effects(&own));
@@ -145,7 +145,7 @@ impl Record {
     fn of_columns(
         py: Python<'_>,
         (name, rows, columns): (&str, usize, Vec<Column<'_>>),
-        options: Vec<String>,
+        options: Arguments,
         progress: Option<&Py<PyAny>>,
     ) -> PyResult<Self> {
         let reading = options::reading(options).map_err(raised)?;
@@ -162,7 +162,7 @@ impl Record {
 pub(crate) fn deviations(
     py: Python<'_>,
     columns: Vec<(String, Bound<'_, PyAny>)>,
-    options: Vec<String>,
+    options: Arguments,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<String> {
     let lent = columns.into_iter().map(Lent::of);

@@ -17,11 +17,11 @@ use allanite::{
         RateUnit,
     },
 };
-use allanite_host::rounding;
 use allanite_host::{
     curve_file::{AxisCurve, CurveFile},
     dependence::candidates::Candidates,
     diagnosis::{diagnose, go_on},
+    rounding,
 };
 use allanite_log::{
     BINS, Evidence, OCTAVES,

@@ -8,9 +8,9 @@ use crate::command::{
     },
     output::{file::OutputFile, places::places, progress},
 };
-use allanite_host::disturbance::invalid;
 use allanite_host::{
     curve_file::{AxisCurve, CurveFile},
+    disturbance::invalid,
     number::number,
 };
 use allanite_log::{

@@ -1,9 +1,9 @@
 //! Queries in this process.
 
 use crate::logs::{Fleet, RATE_HZ, Row, SCALE, found, random, write, write_columns};
-use allanite_host::interface::Record;
 use allanite_fleet::cluster::local;
-use allanite_log::pieces::Pieces;
+use allanite_host::interface::{Record, options::Fitting};
+use allanite_log::{pieces::Pieces, unit::Unit};
 use datafusion::{
     arrow::{
         array::{Array, ArrayRef, AsArray, Int32Array, Int64Array, RecordBatch},
@@ -143,8 +143,9 @@ async fn coefficients_and_diagnoses_are_those_of_the_command_line() {
     };
     for (at, (device, axis, state)) in Fleet::SMALL.states().into_iter().enumerate() {
         let axes = [("gyro".to_owned(), Pieces::from_bytes(&state).unwrap())];
-        let record = Record::of_pieces(&axes, &["--unit=deg/s".to_owned()]).unwrap();
-        let fit: serde_json::Value = serde_json::from_str(&record.fit(&[]).unwrap().0).unwrap();
+        let record = Record::of_pieces(&axes, Unit::DegreesPerSecond).unwrap();
+        let fits = record.fit(&Fitting::default()).unwrap();
+        let fit: serde_json::Value = serde_json::from_str(&fits.json().unwrap()).unwrap();
         let white = &fit["axes"][0]["coefficients"][1];
         assert_eq!(white["symbol"], "N");
         assert_eq!(

@@ -1,8 +1,10 @@
 //! The JSON document of a comparison.
 
 use super::compared::Compared;
-use crate::fit;
-use crate::model_json::{self, Effect, Worst};
+use crate::{
+    fit,
+    model_json::{self, Effect, Worst},
+};
 use allanite::{
     Model,
     comparison::{self, ComparedOctave},

@@ -1,8 +1,8 @@
 //! The text of a comparison.
 
 use super::compared::Compared;
-use crate::fit;
 use crate::{
+    fit,
     number::{duration, number, probability},
     words,
 };

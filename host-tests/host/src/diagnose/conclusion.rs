@@ -5,8 +5,7 @@ use super::{
     lines::comb_words,
     words::{added_chi_squared, shown_p},
 };
-use crate::{known_filter, tried::per, verdict};
-use crate::{number::number, words};
+use crate::{known_filter, number::number, tried::per, verdict, words};
 use allanite::{
     Coefficient, Term, covariate,
     diagnosis::Verdict,

@@ -9,14 +9,12 @@ use crate::{
     curve_file::AxisCurve,
     dependence::candidates::{Candidate as Series, Candidates},
     diagnosis::{diagnose, go_on},
-    stationarity::Stationarity,
-    verdict, words,
-};
-use crate::{
     disturbance::invalid,
     known_filter::{self, known_filter},
     rounding,
+    stationarity::Stationarity,
     tried::{TriedCovariate, tried},
+    verdict, words,
 };
 use allanite::{
     Curve, Error, Model, Record, Scale, Term,

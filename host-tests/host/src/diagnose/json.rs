@@ -4,10 +4,10 @@ use super::{
     diagnosed::{Diagnosed, added_name},
     lines::{Line, comb_words},
 };
-use crate::comb::Comb;
-use crate::fit;
 use crate::{
+    comb::Comb,
     event_json::{Event, event, motion},
+    fit,
     known_filter::Shape,
     model_json::{self, Effect, Worst},
     tried::{self, TriedCovariate},

@@ -6,9 +6,7 @@ use super::{
     pictures::Pictures,
     words::{Finding, candidate_name, limits, shown_p, unexplained, verdict},
 };
-use crate::fit;
-use crate::known_filter::described;
-use crate::{number::two_digits, words};
+use crate::{fit, known_filter::described, number::two_digits, words};
 use allanite::{
     diagnosis::{Candidate, Step},
     fit::Fit,

@@ -3,13 +3,11 @@
 use super::{diagnosed::Diagnosed, given_filter::Better, lines::comb_words};
 use crate::{
     dependence::candidates::{Form, seconds},
-    number::{self, probability},
-    words,
-};
-use crate::{
     known_filter,
+    number::{self, probability},
     tried::per,
     verdict::{brief as in_brief, sentence},
+    words,
 };
 use allanite::{
     Comparison, Term, covariate,

@@ -1,13 +1,14 @@
 //! The five terms fitted to an axis.
 
 use super::judged::Judged;
-use crate::{curve_file::AxisCurve, words};
 use crate::{
+    curve_file::AxisCurve,
     disturbance::invalid,
-    rounding,
+    limit::LimitArgument,
+    record, rounding,
     tried::{self, TriedCovariate},
+    words,
 };
-use crate::{limit::LimitArgument, record};
 use allanite::{
     Curve, Model, Record,
     fit::{Fit, Method, Options, fit},

@@ -4,11 +4,11 @@ use super::{
     fitted::{Fitted, MethodName},
     judged::Judged,
 };
-use crate::units;
 use crate::{
     known_filter::{Shape, known_filter},
     rounding,
     tried::{self, TriedCovariate},
+    units,
 };
 use allanite::{Coefficient, fit::State};
 use allanite_log::unit::Unit;

@@ -1,7 +1,6 @@
 //! A coefficient beside its limit, for a station that measures once and decides.
 
-use crate::limit::LimitArgument;
-use crate::{number::number, units, verdict::UNDECIDED};
+use crate::{limit::LimitArgument, number::number, units, verdict::UNDECIDED};
 use allanite::fit::Fit;
 use allanite_log::{failure::Failure, unit::Unit};
 use serde::Serialize;

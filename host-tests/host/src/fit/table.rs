@@ -3,11 +3,8 @@
 use super::fitted::{Fitted, MethodName};
 use crate::{
     known_filter::{described, known_filter},
-    rounding,
-};
-use crate::{
     number::{duration, number, probability},
-    units,
+    rounding, units,
     verdict::of_five_terms,
     words,
 };

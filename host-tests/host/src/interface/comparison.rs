@@ -3,11 +3,14 @@
 use super::{document::json, own::Own};
 use crate::{
     compare::{compared::Compared, json::document, model::ModelChoice, visible::check_visible},
+    confidence::relative_errors,
+    curve_file::AxisCurve,
     diagnose::words::shown_p,
     effect_argument,
     known_filter::{self, known_filter},
+    record::library_failure,
+    words,
 };
-use crate::{confidence::relative_errors, curve_file::AxisCurve, record::library_failure, words};
 use allanite::{Curve, Model, Term, spectrum::Spectrum};
 use allanite_log::{BINS, OCTAVES, failure::Failure};
 use allanite_plot::{Drawing, Figure, Frame, Quantity, View, svg};

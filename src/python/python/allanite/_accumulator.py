@@ -39,7 +39,7 @@ class Accumulator:
     ) -> None:
         self.axes = (axes,) if isinstance(axes, str) else tuple(axes)
         self.scale = float(scale)
-        self._native = _native.Accumulator(_options.written(rate=rate, scale=scale, unit=unit, axes=self.axes))
+        self._native = _native.Accumulator(_options.given(rate=rate, scale=scale, unit=unit, axes=self.axes))
 
     def push(self, samples: Any) -> None:
         """Adds samples: an array of shape (n,) for one axis, or (n, axes).

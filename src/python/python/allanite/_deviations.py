@@ -59,7 +59,7 @@ def deviations(
         Called with the share that is done, 0 to 1, in each of up to three passes.
     """
     lent = _columns.of_arrays(samples, names, None)
-    text = _native.deviations(lent, _options.written(rate=rate, scale=scale), progress)
+    text = _native.deviations(lent, _options.given(rate=rate, scale=scale), progress)
     return {
         column["axis"]: tuple(_document.build(Deviation, octave) for octave in column["octaves"])
         for column in json.loads(text)

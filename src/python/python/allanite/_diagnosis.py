@@ -87,7 +87,7 @@ class Diagnosis(Axes[AxisDiagnosis]):
 
     axes: tuple[AxisDiagnosis, ...]
     record: Source = field(repr=False, compare=False)
-    _search: tuple[str, ...] = field(default=(), repr=False, compare=False)
+    _search: _options.Options = field(default_factory=dict, repr=False, compare=False)
     _filter: str | None = field(default=None, repr=False, compare=False)
     _document: dict[str, Any] = field(default_factory=dict, repr=False, compare=False)
     _text: str = field(default="", repr=False, compare=False)
@@ -98,11 +98,11 @@ class Diagnosis(Axes[AxisDiagnosis]):
     def _of(
         cls,
         record: Source,
-        search: tuple[str, ...],
+        search: _options.Options,
         filter: str | None,
         progress: Callable[[float], object] | None,
     ) -> Diagnosis:
-        native = record._native_handle().diagnose(list(search), len(record.axes), progress)
+        native = record._native_handle().diagnose(search, len(record.axes), progress)
         document = json.loads(native.json())
         axes = tuple(_document.build(AxisDiagnosis, axis) for axis in document["axes"])
         conclusion = tuple(native.conclusion())
@@ -117,7 +117,7 @@ class Diagnosis(Axes[AxisDiagnosis]):
         native: _native.Diagnosis | None = self._kept.get("native")
         if native is None:
             record = self.record._native_handle()
-            native = record.diagnose(list(self._search), len(self.record.axes), None)
+            native = record.diagnose(self._search, len(self.record.axes), None)
             self._kept["native"] = native
         return native
 
@@ -163,7 +163,7 @@ class Diagnosis(Axes[AxisDiagnosis]):
         """
         if ax is not None:
             return self[axis].model.plot(ax)
-        options = _options.written(axis=axis, step=step, what=what)
+        options = _options.given(axis=axis, step=step, what=what)
         return Picture(self._native_handle().svg(options))
 
     def to_dict(self) -> dict[str, Any]:

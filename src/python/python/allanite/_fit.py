@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from . import _document, _native
+from . import _document, _native, _options
 from ._axes import Axes
 from ._model import Model
 from ._page import html_table, paragraphs
@@ -95,7 +95,7 @@ class Fit(Axes[AxisFit]):
     _text: str = field(default="", repr=False, compare=False)
 
     @classmethod
-    def _of(cls, record: Source, options: list[str], filter: str | None) -> Fit:
+    def _of(cls, record: Source, options: _options.Options, filter: str | None) -> Fit:
         text, printed = record._native_handle().fit(options)
         document = json.loads(text)
         axes = tuple(_document.build(AxisFit, axis) for axis in document["axes"])
@@ -118,9 +118,10 @@ class Fit(Axes[AxisFit]):
         progress: Callable[[float], object] | None = None,
     ) -> Diagnosis:
         """Finds the effects that the five terms lack: see :meth:`Record.diagnose`."""
-        return self.record.diagnose(
+        found: Diagnosis = self.record.diagnose(
             max_effects=max_effects, filter=filter if filter is not None else self._filter, progress=progress
         )
+        return found
 
     def to_dict(self) -> dict[str, Any]:
         """The document that ``allanite fit --json`` prints."""

@@ -203,12 +203,8 @@ def _compared(
     return of._native_handle().compare(axis, options, [effect._native for effect in own])
 
 
-def _model_options(with_: tuple[str, ...], without: tuple[str, ...], filter: str | None) -> list[str]:
-    return [
-        *_options.repeated("with", with_),
-        *_options.repeated("without", without),
-        *_options.written(filter=filter),
-    ]
+def _model_options(with_: tuple[str, ...], without: tuple[str, ...], filter: str | None) -> _options.Options:
+    return _options.repeated("with", with_) | _options.repeated("without", without) | _options.given(filter=filter)
 
 
 def filter_text(filter: Effect | str | None) -> str | None:

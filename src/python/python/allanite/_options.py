@@ -1,36 +1,42 @@
-"""Arguments of Python as the options of the command line, which one parser reads for both."""
+"""Arguments of Python as the options of the native part, by the names that they have on the command line."""
 
 from __future__ import annotations
 
+import numbers
 import os
 from collections.abc import Iterable
-from typing import Any
+from typing import Any, Union
+
+Options = dict[str, Union[bool, float, str, "list[str]"]]
 
 
-def written(**arguments: Any) -> list[str]:
-    """The options that these arguments stand for. ``None`` and ``False`` stand for none, and ``True`` for one without a value.
-
-    Numbers are written with as many digits as tell them apart from all others, so that none changes on the way.
-    """
-    options = []
+def given(**arguments: Any) -> Options:
+    """The options that these arguments stand for. ``None`` and ``False`` stand for none; numbers and texts stay what they are."""
+    options: Options = {}
     for name, value in arguments.items():
-        option = "--" + name.rstrip("_").replace("_", "-")
         if value is None or value is False:
             continue
-        if value is True:
-            options.append(option)
+        option = name.rstrip("_").replace("_", "-")
+        if isinstance(value, (bool, str)):
+            options[option] = value
+        elif isinstance(value, numbers.Real):
+            options[option] = float(value)
+        elif isinstance(value, dict):
+            options[option] = [f"{key}={text(one)}" for key, one in value.items()]
+        elif isinstance(value, Iterable) and not isinstance(value, os.PathLike):
+            options[option] = [text(one) for one in value]
         else:
-            options.append(f"{option}={text(value)}")
+            options[option] = text(value)
     return options
 
 
-def repeated(option: str, values: Any) -> list[str]:
-    """An option that is given once for each value."""
+def repeated(option: str, values: Any) -> Options:
+    """An option that has a list of values, of which one may be given alone."""
     if values is None:
-        return []
+        return {}
     if isinstance(values, (str, os.PathLike)) or not isinstance(values, Iterable):
         values = [values]
-    return [f"--{option}={text(value)}" for value in values]
+    return {option: [text(value) for value in values]}
 
 
 def text(value: Any) -> str:

@@ -95,7 +95,7 @@ class Pieces:
         """The record of the axes of one sensor: ``Pieces.record_of({"gx": gx, "gy": gy})``."""
         items = axes.items() if isinstance(axes, Mapping) else axes
         native = [(name, pieces._native) for name, pieces in items]
-        return Record(_native.Pieces.record(native, _options.written(unit=unit)))
+        return Record(_native.Pieces.record(native, _options.given(unit=unit)))
 
     def __bytes__(self) -> bytes:
         return self._native.to_bytes()

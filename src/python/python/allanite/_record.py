@@ -207,7 +207,7 @@ class Record(Axes[Curve]):
         if isinstance(limits, Mapping):
             limits = [f"{effect}={_options.text(value)}" for effect, value in limits.items()]
         text = filter_text(filter)
-        options = [*_options.written(method=method, filter=text), *_options.repeated("limit", limits)]
+        options = _options.given(method=method, filter=text) | _options.repeated("limit", limits)
         return Fit._of(self, options, text)
 
     def diagnose(
@@ -229,7 +229,7 @@ class Record(Axes[Curve]):
             Called with the share of the axes that are done, 0 to 1.
         """
         text = filter_text(filter)
-        return Diagnosis._of(self, tuple(_options.written(max_effects=max_effects, filter=text)), text, progress)
+        return Diagnosis._of(self, _options.given(max_effects=max_effects, filter=text), text, progress)
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes the curves to a curve file, as ``allanite measure`` does. Its name has to end in ``.json``."""
@@ -278,18 +278,16 @@ def _from_bytes(data: bytes) -> Record:
     return Record(_native.Record.from_bytes(data))
 
 
-def _read_options(*, drop: Any = None, from_: Any = None, covariates: Any = None, **options: Any) -> list[str]:
-    """The options of a reader. Sequences of names are joined by commas."""
+def _read_options(*, drop: Any = None, from_: Any = None, covariates: Any = None, **options: Any) -> _options.Options:
+    """The options of a reader."""
     known = {"rate", "scale", "unit", "columns", "sensor", "time", "time_unit", "topic", "repeats", "to"}
     for name in options:
         if name not in known:
             raise TypeError(f"unexpected argument {name!r}; choose from {', '.join(sorted(known | {'drop', 'from_', 'covariates'}))}")
-    written = _options.written(**options)
-    written += _options.written(**{"from": from_})
-    written += _options.repeated("drop", drop)
+    given = _options.given(**options) | _options.given(**{"from": from_}) | _options.repeated("drop", drop)
     if covariates is False or (not isinstance(covariates, str) and covariates is not None and len(covariates) == 0):
-        return [*written, "--no-covariates"]
-    return [*written, *_options.written(covariates=covariates)]
+        return given | {"no-covariates": True}
+    return given | _options.given(covariates=covariates)
 
 
 def read(

@@ -8,8 +8,7 @@ use allanite::{
         CertifiedState, CertifiedTerm,
     },
 };
-use allanite_host::units;
-use allanite_host::{event_json, model_json};
+use allanite_host::{event_json, model_json, units};
 use allanite_log::unit::Unit;
 use serde::Serialize;
 use serde_json::{Map, Value, json};

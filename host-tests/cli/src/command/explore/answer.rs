@@ -11,8 +11,9 @@ use allanite::{Coefficient, Comparison, fit::State};
 use allanite_host::{
     diagnose::words::{disagreement, shown_p},
     fit::table::state,
+    number::number,
+    units, words,
 };
-use allanite_host::{number::number, units, words};
 use allanite_log::{BINS, OCTAVES, unit::Unit};
 use allanite_plot::{Figure, Frame};
 use serde::Serialize;

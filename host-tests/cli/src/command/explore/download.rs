@@ -3,8 +3,7 @@
 use super::{fitted::Fitted, question::Question, record::SessionRecord};
 use crate::command::output::cell::cell;
 use allanite::Comparison;
-use allanite_host::diagnose::words::shown_p;
-use allanite_host::{confidence::relative_errors, words};
+use allanite_host::{confidence::relative_errors, diagnose::words::shown_p, words};
 use allanite_log::{BINS, OCTAVES};
 use allanite_plot::{Drawing, Figure, Frame, relative_error, svg};
 

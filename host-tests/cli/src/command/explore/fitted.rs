@@ -7,9 +7,10 @@ use allanite::{
     fit::{Fit, Options},
     spectrum::Spectrum,
 };
-use allanite_host::compare::compared::fitted;
-use allanite_host::compare::visible::check_visible;
-use allanite_host::confidence::relative_errors;
+use allanite_host::{
+    compare::{compared::fitted, visible::check_visible},
+    confidence::relative_errors,
+};
 use allanite_log::{
     BINS, OCTAVES,
     failure::{Failure, Place},

@@ -10,8 +10,11 @@ use crate::command::input::{
     record::{self, is_curve, library_failure},
 };
 use allanite::{Curve, Model, effect::Span, spectrum::Spectrum};
-use allanite_host::diagnose::{diagnosed::Diagnosed, pictures};
-use allanite_host::{curve_file::AxisCurve, words};
+use allanite_host::{
+    curve_file::AxisCurve,
+    diagnose::{diagnosed::Diagnosed, pictures},
+    words,
+};
 use allanite_log::{
     BINS, Evidence, OCTAVES, Spectrogram,
     failure::{Failure, one_line},

@@ -10,8 +10,8 @@ use super::{
     record::{self, ListedRecord, SessionRecord},
     shell,
 };
-use crate::command::diagnose::arguments::OfPage;
 use crate::command::{
+    diagnose::arguments::OfPage,
     input::record::library_failure,
     output::glossary::{self, Word},
 };

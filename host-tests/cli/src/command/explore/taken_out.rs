@@ -1,8 +1,7 @@
 //! A record without what follows its covariates, such as the temperature.
 
 use allanite::{Curve, spectrum::Spectrum};
-use allanite_host::curve_file::SpectrumLevels;
-use allanite_host::diagnose::diagnosed::Diagnosed;
+use allanite_host::{curve_file::SpectrumLevels, diagnose::diagnosed::Diagnosed};
 use allanite_log::{BINS, OCTAVES};
 use serde::{Deserialize, Serialize};
 

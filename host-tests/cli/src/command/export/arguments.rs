@@ -1,7 +1,7 @@
 //! The options of `export`.
 
-use crate::command::compare::model::ModelArguments;
 use crate::command::{
+    compare::model::ModelArguments,
     examples,
     input::record::{CovariateArguments, LogArguments},
 };

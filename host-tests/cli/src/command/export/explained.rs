@@ -8,6 +8,8 @@ use allanite::{
 };
 use allanite_host::{
     compare::compared::Compared,
+    curve_file::AxisCurve,
+    dependence::candidates::Candidate,
     diagnose::{
         diagnosed::Diagnosed,
         words::{unexplained, verdict},
@@ -16,9 +18,8 @@ use allanite_host::{
     fit::fitted::{Fitted, MethodName},
     known_filter,
     tried::TriedCovariate,
-};
-use allanite_host::{
-    curve_file::AxisCurve, dependence::candidates::Candidate, verdict::in_comment, words,
+    verdict::in_comment,
+    words,
 };
 use allanite_log::{
     BINS, Evidence, OCTAVES,

@@ -7,8 +7,10 @@ use allanite::{
     effect::{AngleRandomWalk, BiasInstability, Effect, GaussMarkov, RateRandomWalk, Resonance},
     fit::ShapeEstimate,
 };
-use allanite_host::known_filter::is_filter;
-use allanite_host::{dependence::candidates::Form, overbound::GaussMarkovProcess, words::plain};
+use allanite_host::{
+    dependence::candidates::Form, known_filter::is_filter, overbound::GaussMarkovProcess,
+    words::plain,
+};
 use std::f64::consts::PI;
 
 /// What a model has beside its white noise and its random walk, in radians and seconds.

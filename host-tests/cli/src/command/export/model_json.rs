@@ -7,8 +7,10 @@ use super::{
     given::Given,
 };
 use allanite::{Coefficient, fit::State};
-use allanite_host::known_filter::Shape;
-use allanite_host::overbound::{GaussMarkovProcess, Overbound};
+use allanite_host::{
+    known_filter::Shape,
+    overbound::{GaussMarkovProcess, Overbound},
+};
 use serde::Serialize;
 
 /// The document.

@@ -2,8 +2,11 @@
 
 use crate::command::input::many::shown;
 use allanite::fit::Fit;
-use allanite_host::fit::{fitted::Fitted, table::customary};
-use allanite_host::{number::probability, verdict::ADEQUATE};
+use allanite_host::{
+    fit::{fitted::Fitted, table::customary},
+    number::probability,
+    verdict::ADEQUATE,
+};
 use comfy_table::{CellAlignment, Table, presets::NOTHING};
 use std::{
     io::{self, Write},

@@ -2,8 +2,8 @@
 
 use super::device::Device;
 use crate::command::decode;
-use allanite_host::limit::Limit;
 use allanite_host::{
+    limit::Limit,
     lot::{Capability, Decision, ErrorModel, Measurement, Sample, acceptance_limit},
     units,
 };

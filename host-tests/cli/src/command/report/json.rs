@@ -3,7 +3,6 @@
 
 use crate::command::output::drawn_frame::{self, DrawnFrame};
 use allanite::diagnosis::{Addition, Candidate as Tried, Step};
-use allanite_host::units;
 use allanite_host::{
     diagnose::{
         self,
@@ -12,7 +11,7 @@ use allanite_host::{
         pictures::Pictures,
         words::{Finding, candidate_name, disagreement, shown_p},
     },
-    fit, model_json,
+    fit, model_json, units,
 };
 use allanite_log::{BINS, OCTAVES, unit::Unit};
 use allanite_plot::{CourseFigure, Frame, Line, Measured, Share};

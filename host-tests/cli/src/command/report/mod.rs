@@ -3,8 +3,8 @@
 mod json;
 mod page;
 
-use crate::command::diagnose::arguments::DiagnosisArguments;
 use crate::command::{
+    diagnose::arguments::DiagnosisArguments,
     examples, explore,
     output::{file::OutputFile, written::print_written},
 };

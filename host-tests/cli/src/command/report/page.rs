@@ -8,12 +8,14 @@ use allanite::{
     diagnosis::{Options, Verdict},
     fit::ADEQUATE_P,
 };
-use allanite_host::diagnose::{
-    conclusion,
-    diagnosed::Diagnosed,
-    words::{lead, limits},
+use allanite_host::{
+    diagnose::{
+        conclusion,
+        diagnosed::Diagnosed,
+        words::{lead, limits},
+    },
+    verdict, words,
 };
-use allanite_host::{verdict, words};
 use allanite_log::failure::one_line;
 use allanite_plot as plot;
 use maud::{DOCTYPE, Markup, PreEscaped, html};

@@ -3,8 +3,10 @@
 use allanite::effect::{
     AngleRandomWalk, CATALOGUE, DecimationFilter, Effect, IEEE_952, MAX_PARAMETERS,
 };
-use allanite_host::effect_argument::EffectArgument;
-use allanite_host::simulate::{Coefficients, Course, Hidden, Thermal};
+use allanite_host::{
+    effect_argument::EffectArgument,
+    simulate::{Coefficients, Course, Hidden, Thermal},
+};
 use allanite_log::failure::{Failure, brief};
 use clap::Args;
 

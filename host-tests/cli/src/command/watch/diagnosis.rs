@@ -1,10 +1,12 @@
 //! The diagnosis of a recording, which a thread of its own repeats while counts arrive.
 
 use allanite::Model;
-use allanite_host::curve_file::AxisCurve;
-use allanite_host::diagnose::{
-    diagnosed::Diagnosed,
-    words::{brief, verdict},
+use allanite_host::{
+    curve_file::AxisCurve,
+    diagnose::{
+        diagnosed::Diagnosed,
+        words::{brief, verdict},
+    },
 };
 use allanite_log::Evidence;
 use std::{

@@ -49,13 +49,7 @@ const QUESTIONS: [&[&str]; 5] = [
 /// Asks everything of every record, writes the answers to a folder, and compares them with those in another one.
 pub(crate) fn run_all(folder: &Path, against: Option<&Path>, more: &[PathBuf]) -> Result<()> {
     let mut build = cargo();
-    run(build.args([
-        "build",
-        "--package",
-        "allanite-cli",
-        "--bin",
-        "allanite",
-    ]))?;
+    run(build.args(["build", "--package", "allanite-cli", "--bin", "allanite"]))?;
     let program = fs::canonicalize("target/debug/allanite")?;
     let records = folder.join("records");
     let answers = folder.join("answers");

@@ -5,8 +5,23 @@ use allanite_log::Options;
 use std::fs;
 use tempfile::TempDir;
 
+/// The step between the places at which the files are cut. It is odd, so that the places fall on every byte of a word.
+const STEP: usize = 7;
+
 #[test]
-fn truncation_at_any_byte_is_refused_or_gives_the_rows_before_it_with_a_note() {
+fn truncation_is_refused_or_gives_the_rows_before_it_with_a_note() {
+    cut_at_every(STEP);
+}
+
+mod thorough {
+    #[test]
+    fn truncation_at_any_byte_is_refused_or_gives_the_rows_before_it_with_a_note() {
+        super::cut_at_every(1);
+    }
+}
+
+/// Cuts files of every format at every multiple of `step` bytes.
+fn cut_at_every(step: usize) {
     let rows = counts();
     let folder = TempDir::new().unwrap();
     for name in [
@@ -20,7 +35,7 @@ fn truncation_at_any_byte_is_refused_or_gives_the_rows_before_it_with_a_note() {
         let bytes = fs::read(fixture(name)).unwrap();
         let path = folder.path().join(name);
         let mut whole = 0;
-        for cut in 0..bytes.len() {
+        for cut in (0..bytes.len()).step_by(step) {
             fs::write(&path, &bytes[..cut]).unwrap();
             let Ok(log) = try_read(&path, &Options::default()) else {
                 continue;

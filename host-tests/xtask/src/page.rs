@@ -6,12 +6,16 @@ use crate::{
     step::step,
     supply_chain::{SOURCES, cargo_home},
 };
-use anyhow::{Context as _, Result};
+use anyhow::{Context as _, Result, ensure};
 use base64::{Engine as _, prelude::BASE64_STANDARD};
 use std::{fs, io::Write as _, num::NonZeroU64, path::Path, process::Command};
+use tempfile::NamedTempFile;
 
 /// A program that reads and writes files, for a system that a page can be.
 const TARGET: &str = "wasm32-wasip1";
+
+/// The optimiser of Binaryen.
+pub(crate) const OPTIMISER: &str = "wasm-opt";
 
 /// The styles: those of a report, and what the page adds to them.
 const STYLES: [&str; 3] = [
@@ -127,7 +131,7 @@ fn packed(program: &Path) -> Result<Vec<u8>> {
     {
         return fs::read(&place).with_context(|| place.display().to_string());
     }
-    let text = fs::read(program).with_context(|| program.display().to_string())?;
+    let text = smaller(program)?;
     let mut packed = Vec::new();
     let packer = zopfli::Options {
         iteration_count: ITERATIONS,
@@ -136,10 +140,42 @@ fn packed(program: &Path) -> Result<Vec<u8>> {
     zopfli::compress(packer, zopfli::Format::Gzip, &*text, &mut packed)?;
     // Another process may pack the same: each writes a file of its own, and the last one stays.
     let folder = place.parent().unwrap_or(Path::new("."));
-    let mut file = tempfile::NamedTempFile::new_in(folder)?;
+    let mut file = NamedTempFile::new_in(folder)?;
     file.write_all(&packed)?;
     file.persist(&place)?;
     Ok(packed)
+}
+
+/// What the compiler may emit for the target, so that the optimiser reads it.
+const WASM_FEATURES: [&str; 6] = [
+    "--enable-bulk-memory",
+    "--enable-multivalue",
+    "--enable-mutable-globals",
+    "--enable-nontrapping-float-to-int",
+    "--enable-reference-types",
+    "--enable-sign-ext",
+];
+
+/// The program after the optimiser, which takes 3 % off its packed size. It changes no result: floats follow the standard.
+/// Without it, the page is larger and does the same.
+fn smaller(program: &Path) -> Result<Vec<u8>> {
+    let optimised = NamedTempFile::new()?;
+    let mut optimise = Command::new(OPTIMISER);
+    optimise.arg("-Oz").args(WASM_FEATURES).arg(program);
+    optimise.arg("-o").arg(optimised.path());
+    let smaller = match optimise.status() {
+        Ok(status) => {
+            ensure!(status.success(), "{OPTIMISER} failed ({status})");
+            optimised.path()
+        }
+        Err(_) => {
+            println!(
+                "      the page is 3 % larger without {OPTIMISER}, which Debian's package binaryen has"
+            );
+            program
+        }
+    };
+    fs::read(smaller).with_context(|| smaller.display().to_string())
 }
 
 /// Reads a file without the lines that are comments alone and without the blanks at the begin of lines.

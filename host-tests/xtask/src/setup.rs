@@ -3,6 +3,7 @@
 
 use crate::{
     firmware::{Way, c_library::ARM_GCC},
+    page::OPTIMISER,
     step::run as run_command,
 };
 use anyhow::{Context as _, Result, bail};
@@ -16,13 +17,14 @@ const DEBIAN_COMPILER: [&str; 3] = ["rustc-web", "rust-web-src", "rust-web-clipp
 /// Debian's linker, for machines where rustup brings none.
 const DEBIAN_LINKER: &str = "lld";
 /// Programs that the tests run, and the Debian packages that contain them.
-const PROGRAMS: [(&str, &str); 6] = [
+const PROGRAMS: [(&str, &str); 7] = [
     ("qemu-system-arm", "qemu-system-arm"),
     ("qemu-system-riscv32", "qemu-system-misc"),
     (ARM_GCC, "gcc-arm-none-eabi"),
     ("cmake", "cmake"),
     (CHROMIUM, "chromium"),
     ("strace", "strace"),
+    (OPTIMISER, "binaryen"),
 ];
 /// The browser that the tests open pages with.
 pub const CHROMIUM: &str = "chromium";

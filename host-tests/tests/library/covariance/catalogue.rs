@@ -228,7 +228,11 @@ fn every_effect_is_right_in_short_records() {
     assert_every_effect(3000);
 }
 
-#[test]
-fn every_effect_is_right_in_long_records() {
-    assert_every_effect(1 << 18);
+mod thorough {
+    use super::*;
+
+    #[test]
+    fn every_effect_is_right_in_long_records() {
+        assert_every_effect(1 << 18);
+    }
 }

@@ -76,13 +76,14 @@ impl<const PAGE: usize> Long<PAGE> {
         ((saved + usize::from(AXES - 1 - axis)) / usize::from(AXES)).checked_sub(1)
     }
 
-    fn lose_nothing_to_power_cuts() {
+    /// Cuts the power at every operation, or at each one of so many.
+    fn lose_nothing_to_power_cuts(step: usize) {
         const SNAPSHOTS: usize = 12;
         let (all, whole) = Self::run(RamFlash::new(Self::PAGES), SNAPSHOTS);
         assert_eq!(all, SNAPSHOTS);
         assert!(whole.erasures > 0, "{} pages", Self::PAGES);
         let (mut old, mut new) = (0, 0);
-        for (after, &length) in whole.operations.iter().enumerate() {
+        for (after, &length) in whole.operations.iter().enumerate().step_by(step) {
             for torn in [0, length / 2, length] {
                 let power_cut = PowerCut { after, torn };
                 let mut flash = RamFlash::new(Self::PAGES);
@@ -146,14 +147,30 @@ impl<const PAGE: usize> Long<PAGE> {
 
 #[test]
 fn long_snapshots_lose_nothing_to_power_cuts() {
-    Long::<2048>::lose_nothing_to_power_cuts();
-    Long::<4096>::lose_nothing_to_power_cuts();
+    Long::<2048>::lose_nothing_to_power_cuts(3);
+    Long::<4096>::lose_nothing_to_power_cuts(3);
 }
 
 #[test]
 fn damaged_stores_of_long_snapshots_accept_the_next_save() {
-    Long::<2048>::accept_the_next_save_after_damage(600);
-    Long::<4096>::accept_the_next_save_after_damage(600);
+    Long::<2048>::accept_the_next_save_after_damage(60);
+    Long::<4096>::accept_the_next_save_after_damage(60);
+}
+
+mod thorough {
+    use super::*;
+
+    #[test]
+    fn long_snapshots_lose_nothing_to_a_power_cut_at_any_operation() {
+        Long::<2048>::lose_nothing_to_power_cuts(1);
+        Long::<4096>::lose_nothing_to_power_cuts(1);
+    }
+
+    #[test]
+    fn stores_of_long_snapshots_that_are_damaged_in_every_way_accept_the_next_save() {
+        Long::<2048>::accept_the_next_save_after_damage(600);
+        Long::<4096>::accept_the_next_save_after_damage(600);
+    }
 }
 
 #[test]

@@ -206,15 +206,21 @@ fn is_in_flash(kind: SectionKind) -> bool {
     )
 }
 
-/// Builds several images for several cores at once: one command for a precision, so that no core of this host waits while another one
-/// links. Images that are up to date cost a moment.
+/// Builds several images for several cores at once: one command for a precision and an architecture, in which no core of this host
+/// waits while another one links. Images that are up to date cost a moment.
+///
+/// Architectures are built apart, because one command of cargo joins the features that a crate has for each of its targets:
+/// `critical-section` has one of its features for Arm and another one for RISC-V, and does not build with both.
 ///
 /// # Errors
 /// Fails if no compiler for the targets is found, or if the build fails.
 pub fn build_all(names: &[&str], cores: &[Core], profile: &str) -> Result<()> {
-    for precision in Precision::ALL {
+    let kinds = Precision::ALL
+        .into_iter()
+        .flat_map(|precision| [false, true].map(|is_arm| (precision, is_arm)));
+    for kind in kinds {
         let cores: Vec<Core> = (cores.iter().copied())
-            .filter(|core| core.precision == precision)
+            .filter(|core| (core.precision, core.target.starts_with("thumb")) == kind)
             .collect();
         let feature = |name: &str| FEATURES.iter().find(|(image, _)| *image == name);
         let (apart, plain): (Vec<&str>, Vec<&str>) =

@@ -934,7 +934,9 @@ AllaniteStatus allanite_look_advance(AllaniteLook *look, bool *complete);
 //
 // # Safety
 // All are null, or point to what they say.
-AllaniteStatus allanite_look_conclude(AllaniteSelfTest *test, AllaniteLook *look, AllaniteTestStatus *to);
+AllaniteStatus allanite_look_conclude(AllaniteSelfTest *test,
+                                      AllaniteLook *look,
+                                      AllaniteTestStatus *to);
 #endif
 
 #if defined(ALLANITE_WHOLE)

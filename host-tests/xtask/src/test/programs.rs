@@ -57,7 +57,7 @@ pub(crate) fn host(thorough: bool) -> Result<()> {
     };
     thread::scope(|scope| {
         let lanes: Vec<_> = (lanes.into_iter())
-            .map(|jobs| scope.spawn(|| jobs.into_iter().try_for_each(|job| job.run())))
+            .map(|jobs| scope.spawn(|| run_all(jobs)))
             .collect();
         // Every lane ends before the first failure is passed on.
         let ends: Vec<Result<()>> = (lanes.into_iter())
@@ -77,6 +77,16 @@ pub(crate) fn host(thorough: bool) -> Result<()> {
         "--exclude",
         "allanite-python",
     ]))
+}
+
+/// Runs each job, and then names those that failed.
+fn run_all(jobs: Vec<Job>) -> Result<()> {
+    let ends = jobs.into_iter().map(Job::run);
+    let failed: Vec<String> = (ends.filter_map(Result::err))
+        .map(|error| format!("{error:#}"))
+        .collect();
+    ensure!(failed.is_empty(), "{}", failed.join("; "));
+    Ok(())
 }
 
 /// What cargo has built for the tests.

@@ -79,7 +79,7 @@ pub(crate) fn run(arguments: &[String]) -> Result<()> {
     step(
         "Python: the wheel",
         program("maturin")
-            .args(["build", "--locked", "--manifest-path"])
+            .args(["build", "--locked", "--profile", "dev", "--manifest-path"])
             .arg(workspace().join("src/python/Cargo.toml"))
             .arg("--out")
             .arg(&wheels)

@@ -30,47 +30,52 @@ const PARTS: [&str; 5] = [
     "allanite-cli/bags,allanite-cli/tables",
 ];
 
+/// The native part of the package, and the program to compare the package with.
+pub(crate) struct Native {
+    pub(crate) library: PathBuf,
+    pub(crate) program: PathBuf,
+}
+
+/// Tests the package in a folder of its own, with a native part that is built already. [`run`] tests the wheel.
+///
+/// # Errors
+/// When the package cannot be copied, or a test fails.
+pub(crate) fn test(native: &Native) -> Result<()> {
+    let Some(environment) = Environment::new()? else {
+        return Ok(());
+    };
+    let folder = host_target_directory().join("python-package");
+    let package = folder.join("allanite");
+    if package.exists() {
+        // Only what is there now is to be tested.
+        fs::remove_dir_all(&package).with_context(|| package.display().to_string())?;
+    }
+    fs::create_dir_all(&package)?;
+    for entry in fs::read_dir(workspace().join("src/python/python/allanite"))? {
+        let file = entry?.path();
+        if let Some(name) = file.file_name().filter(|_| file.is_file()) {
+            fs::copy(&file, package.join(name))?;
+        }
+    }
+    let name = if cfg!(windows) {
+        "_native.pyd"
+    } else {
+        "_native.abi3.so"
+    };
+    fs::copy(&native.library, package.join(name))?;
+    environment.pytest(&[], &native.program, Some(&folder))
+}
+
 /// Builds the wheel, installs it, and runs its tests. `arguments` go to pytest.
 ///
 /// # Errors
 /// When the wheel does not build, or a test fails.
 pub(crate) fn run(arguments: &[String]) -> Result<()> {
-    let Some(python) = NAMES.into_iter().find(|name| is_able(name)) else {
-        println!(
-            "\n== Python\nskipped: no Python from 3.10 on with venv is here; install python3 and python3-venv"
-        );
+    let Some(environment) = Environment::new()? else {
         return Ok(());
     };
     // The wheel shares it with the programs of the host.
     let target = host_target_directory();
-    let environment = target.join("python");
-    let of_environment = programs(&environment);
-    if !is_able(&of_environment.join("python").to_string_lossy()) {
-        step(
-            "Python: a virtual environment",
-            Command::new(python)
-                .args(["-m", "venv", "--clear"])
-                .arg(&environment),
-        )?;
-    }
-    let program = |name: &str| Command::new(of_environment.join(name));
-    let installed = step(
-        "Python: maturin and what the tests need",
-        program("python")
-            .args([
-                "-m",
-                "pip",
-                "install",
-                "--quiet",
-                "--disable-pip-version-check",
-            ])
-            .args(["--requirement", REQUIREMENTS])
-            .current_dir(workspace()),
-    );
-    if let Err(error) = installed {
-        println!("skipped: pip cannot install {REQUIREMENTS}, which needs the network: {error:#}");
-        return Ok(());
-    }
     let wheels = target.join("wheels");
     if wheels.exists() {
         // Only the wheel that is built now is to be there.
@@ -78,7 +83,8 @@ pub(crate) fn run(arguments: &[String]) -> Result<()> {
     }
     step(
         "Python: the wheel",
-        program("maturin")
+        environment
+            .program("maturin")
             .args(["build", "--locked", "--profile", "dev", "--manifest-path"])
             .arg(workspace().join("src/python/Cargo.toml"))
             .arg("--out")
@@ -100,25 +106,81 @@ pub(crate) fn run(arguments: &[String]) -> Result<()> {
     };
     step(
         "Python: installing the wheel",
-        program("python")
-            .args([
-                "-m",
-                "pip",
-                "install",
-                "--quiet",
-                "--disable-pip-version-check",
-            ])
+        environment
+            .pip()
             .args(["--force-reinstall", "--no-deps"])
             .arg(&wheel),
     )?;
-    step(
-        "Python: tests",
-        program("python")
+    environment.pytest(arguments, &target.join("debug/allanite"), None)
+}
+
+/// A virtual environment with what the tests need.
+struct Environment {
+    programs: PathBuf,
+}
+
+impl Environment {
+    /// Makes the environment in `target/python`, or says why the tests are skipped.
+    fn new() -> Result<Option<Self>> {
+        let Some(python) = NAMES.into_iter().find(|name| is_able(name)) else {
+            println!(
+                "skipped: no Python from 3.10 on with venv is here; install python3 and python3-venv"
+            );
+            return Ok(None);
+        };
+        let folder = host_target_directory().join("python");
+        let environment = Self {
+            programs: programs(&folder),
+        };
+        let own = environment.programs.join("python");
+        if !is_able(&own.to_string_lossy()) {
+            step(
+                "Python: a virtual environment",
+                Command::new(python)
+                    .args(["-m", "venv", "--clear"])
+                    .arg(&folder),
+            )?;
+        }
+        let installed = step(
+            "Python: maturin and what the tests need",
+            environment
+                .pip()
+                .args(["--requirement", REQUIREMENTS])
+                .current_dir(workspace()),
+        );
+        if let Err(error) = installed {
+            println!(
+                "skipped: pip cannot install {REQUIREMENTS}, which needs the network: {error:#}"
+            );
+            return Ok(None);
+        }
+        Ok(Some(environment))
+    }
+
+    fn program(&self, name: &str) -> Command {
+        Command::new(self.programs.join(name))
+    }
+
+    fn pip(&self) -> Command {
+        let mut pip = self.program("python");
+        pip.args(["-m", "pip", "install", "--quiet"])
+            .arg("--disable-pip-version-check");
+        pip
+    }
+
+    /// Runs the tests against a program, with the package that is installed or with that in a folder.
+    fn pytest(&self, arguments: &[String], program: &Path, folder: Option<&Path>) -> Result<()> {
+        let mut pytest = self.program("python");
+        pytest
             .args(["-m", "pytest", "--quiet"])
             .args(arguments)
             .current_dir(workspace().join("src/python"))
-            .env("ALLANITE", target.join("debug/allanite")),
-    )
+            .env("ALLANITE", program);
+        if let Some(folder) = folder {
+            pytest.env("PYTHONPATH", folder);
+        }
+        step("Python: tests", &mut pytest)
+    }
 }
 
 /// The folder of the programs of a virtual environment.

@@ -1,6 +1,6 @@
 //! Checks a change: in a quarter of an hour what a change can break, and with `--all` everything that the project promises.
 //!
-//! Builds take longer than tests, so that each crate is built once: xtask, the tests, the program and the wheel share a profile and
+//! Builds take longer than tests, so that each crate is built once: xtask, the tests, the programs and the package for Python share a profile and
 //! a folder, and the images of a precision are built by one command. The table in `host-tests/doc/promises.md` names for each promise
 //! the test that watches it in every run, and the test of `--all` that proves it.
 
@@ -15,6 +15,7 @@ use crate::{
     python, setup,
 };
 use anyhow::Result;
+use programs::Built;
 use stages::Stages;
 
 /// The images that each run builds and tests, on three cores: one without hardware for division and floats, one with floats in
@@ -44,10 +45,15 @@ pub(crate) fn run(all: bool) -> Result<()> {
     lints::run(&mut stages, all)?;
     stages.run("the library in both precisions", programs::library)?;
     stages.run("the images for three cores", images)?;
-    stages.run("the programs of the host", || programs::host(false))?;
-    stages.run("Python", || python::run(&[]))?;
+    let mut built = Built::default();
+    stages.run("the build of the programs of the host", || {
+        built = Built::new()?;
+        Ok(())
+    })?;
+    stages.run("the programs of the host", || programs::host(&built, false))?;
+    stages.run("Python", || python::test(&built.python()?))?;
     if all {
-        thorough::run(&mut stages)?;
+        thorough::run(&mut stages, &built)?;
     }
     stages.end()
 }

@@ -3,6 +3,7 @@
 use super::lints::SINGLE;
 use crate::{
     firmware::{Heartbeat, cargo},
+    python::Native,
     step::{captured, run as command},
 };
 use anyhow::{Context as _, Result, bail, ensure};
@@ -30,6 +31,8 @@ const WAITING: [&str; 6] = [
 ];
 /// So many of them wait at once.
 const WAITING_AT_ONCE: &str = "6";
+/// The native part of the package for Python.
+const PYTHON: &str = "allanite_python";
 /// The test program that they are in.
 const COMMAND_LINE: &str = "cli";
 
@@ -47,8 +50,7 @@ pub(crate) fn library() -> Result<()> {
 }
 
 /// Tests everything else, but Python: the tests of each run, or those of `--all` alone.
-pub(crate) fn host(thorough: bool) -> Result<()> {
-    let built = Built::new()?;
+pub(crate) fn host(built: &Built, thorough: bool) -> Result<()> {
     let lanes = if thorough {
         vec![built.jobs(&[THOROUGH])]
     } else {
@@ -90,45 +92,74 @@ fn run_all(jobs: Vec<Job>) -> Result<()> {
 }
 
 /// What cargo has built for the tests.
-struct Built {
+#[derive(Default)]
+pub(crate) struct Built {
     /// Each program of tests: its name, its path and the folder of its package.
     tests: Vec<(String, PathBuf, PathBuf)>,
     /// The programs that the tests call, with the variables by which they find them.
     programs: Vec<(String, String)>,
+    /// The native part of the package for Python.
+    native: Option<PathBuf>,
 }
 
 impl Built {
-    /// Builds the tests of every package except the library, whose tests are built in both precisions, and Python.
-    fn new() -> Result<Self> {
+    /// Builds the tests of every package except the library, whose tests are built in both precisions, and the native part of the
+    /// package for Python. One command builds all of them, because cargo would build a dependency once more for each command that asks
+    /// for other features of it.
+    ///
+    /// # Errors
+    /// When something does not build.
+    pub(crate) fn new() -> Result<Self> {
         let messages = captured(
             cargo()
-                .args(["test", "--workspace", "--no-run"])
-                .args(["--exclude", "allanite", "--exclude", "allanite-python"])
+                .args(["build", "--workspace", "--exclude", "allanite"])
+                .args(["--lib", "--bins", "--tests"])
                 .arg("--message-format=json-render-diagnostics"),
         )?;
-        let mut built = Self {
-            tests: Vec::new(),
-            programs: Vec::new(),
-        };
+        let mut built = Self::default();
         for line in messages.lines() {
             let message: Value = serde_json::from_str(line).context("a message of cargo")?;
-            let Some(executable) = message["executable"].as_str() else {
-                continue;
-            };
-            let name = message["target"]["name"].as_str().unwrap_or_default();
-            if message["profile"]["test"] == true {
-                let manifest = Path::new(message["manifest_path"].as_str().unwrap_or_default());
-                let folder = manifest.parent().context("a package without a folder")?;
-                built
-                    .tests
-                    .push((name.to_owned(), executable.into(), folder.into()));
-            } else {
-                let variable = format!("CARGO_BIN_EXE_{name}");
-                built.programs.push((variable, executable.to_owned()));
-            }
+            built.add(&message)?;
         }
         ensure!(!built.tests.is_empty(), "cargo has built no tests");
         Ok(built)
+    }
+
+    /// Takes what a message of cargo names.
+    fn add(&mut self, message: &Value) -> Result<()> {
+        let name = message["target"]["name"].as_str().unwrap_or_default();
+        if name == PYTHON {
+            let files = message["filenames"].as_array().into_iter().flatten();
+            self.native = files.filter_map(Value::as_str).map(PathBuf::from).next();
+        }
+        let Some(executable) = message["executable"].as_str() else {
+            return Ok(());
+        };
+        if message["profile"]["test"] == true {
+            let manifest = Path::new(message["manifest_path"].as_str().unwrap_or_default());
+            let folder = manifest.parent().context("a package without a folder")?;
+            let test = (name.to_owned(), executable.into(), folder.into());
+            self.tests.push(test);
+        } else {
+            let variable = format!("CARGO_BIN_EXE_{name}");
+            self.programs.push((variable, executable.to_owned()));
+        }
+        Ok(())
+    }
+
+    /// The native part of the package for Python, and the program to compare it with.
+    ///
+    /// # Errors
+    /// When cargo has named none.
+    pub(crate) fn python(&self) -> Result<Native> {
+        let mut programs = self.programs.iter();
+        let program = programs.find(|(name, _)| name == "CARGO_BIN_EXE_allanite");
+        let (_, program) = program.context("cargo has not built the program")?;
+        let library = self.native.clone();
+        Ok(Native {
+            library: library.context("cargo has not built the package for Python")?,
+            program: program.into(),
+        })
     }
 
     /// The tests of each run: those that wait, and all others.

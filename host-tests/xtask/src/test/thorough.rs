@@ -1,7 +1,11 @@
 //! What `--all` adds: every core in both precisions, budgets, the package, faults, hostile inputs, fuzzing, Miri, fleets and studies.
 
-use super::{programs, publishing, stages::Stages};
-use crate::{bench, firmware::workspace, fleet, fuzz, miri, study};
+use super::{
+    programs::{self, Built},
+    publishing,
+    stages::Stages,
+};
+use crate::{bench, firmware::workspace, fleet, fuzz, miri, python, study};
 use anyhow::Result;
 
 /// The seconds for which each fuzz target runs.
@@ -17,12 +21,13 @@ const STUDIES: [&[&str]; 5] = [
     &["theory"],
 ];
 
-pub(crate) fn run(stages: &mut Stages) -> Result<()> {
+pub(crate) fn run(stages: &mut Stages, built: &Built) -> Result<()> {
     publishing::run(stages)?;
     stages.run("budgets of every core", bench::check_budgets)?;
     stages.run("the programs of the host, thoroughly", || {
-        programs::host(true)
+        programs::host(built, true)
     })?;
+    stages.run("the wheel for Python", || python::run(&[]))?;
     for target in fuzz::targets(&workspace().join("host-tests/fuzz"))? {
         stages.run(&format!("fuzzing of {target}"), || {
             fuzz::fuzz(&target, FUZZING_S, 1)

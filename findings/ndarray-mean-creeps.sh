@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# One would guess: mean of a one-dimensional ndarray of f32 sums in pairs or in eight parts, so ten million rates
-# of 0.1 deg/s have the mean 0.1; NumPy's mean of float32 is right to seven digits.
-# What happens: the mean is 0.1011, and mean_axis of three columns near 1000 is 1009: sums of f32 grow one by one until an
-# addend no longer fits, and mean_axis lacks even the eight parts. var of the same array is right.
+# One would guess: mean of a one-dimensional ndarray of f32 keeps its rounding errors small, so ten million rates of 0.1 deg/s
+# have the mean 0.1 to six digits, and mean_axis does so for three columns.
+# What happens: the mean is 0.1011, and mean_axis of three columns near 1000 is 1009: sums of f32 grow until what is added
+# is rounded away.
 # Versions: ndarray 0.17.2.
-# Why it matters: the bias of a long record in f32 is wrong by one percent, that is by many times a gyro's bias instability.
+# Why it matters: the bias of a long record in f32 is wrong by one percent, and nothing says so.
 set -euo pipefail
 dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT

@@ -6,7 +6,10 @@ use allanite::{diagnosis::Verdict, fit::Fit};
 /// What a model is that explains the record within its errors.
 pub const ADEQUATE: &str = "adequate";
 
-/// Such a model in a sentence.
+/// What a model is that does not.
+pub const INADEQUATE: &str = "not adequate";
+
+/// A model that explains the record, in a sentence.
 pub const ADEQUATE_MODEL: &str = "an adequate model";
 
 /// The probability from which on a model is, as a setting.
@@ -21,6 +24,9 @@ pub const NOT_STATIONARY_IN_WORDS: &str = "not stationary";
 /// What events during a record mean for its coefficients.
 pub const MIXTURE: &str = "the record is not stationary: its coefficients are those of a mixture, so leave out the disturbed part or record again";
 
+/// What a misfit means.
+pub const ANOTHER_EFFECT: &str = "the record has another effect";
+
 /// That other effects would do as well as the one that was chosen.
 pub fn ambiguous(others: &str) -> String {
     format!("ambiguous, {others} would explain the record about as well")
@@ -30,7 +36,7 @@ pub fn ambiguous(others: &str) -> String {
 pub const fn word(adequate: Option<bool>) -> &'static str {
     match adequate {
         Some(true) => ADEQUATE,
-        Some(false) => "not adequate",
+        Some(false) => INADEQUATE,
         None => "too few octaves to judge",
     }
 }
@@ -57,11 +63,10 @@ pub fn with_p(fit: &Fit) -> String {
 pub fn in_comment(fit: &Fit) -> String {
     let (adequate, p) = (fit.is_adequate(), probability(fit.p_value));
     match adequate {
-        Some(true) => format!("{} (p {p})", word(adequate)),
-        Some(false) => format!(
-            "{} (p {p}): the record has another effect, and the overbound is the safer choice",
-            word(adequate)
-        ),
+        Some(true) => format!("{ADEQUATE} (p {p})"),
+        Some(false) => {
+            format!("{INADEQUATE} (p {p}): {ANOTHER_EFFECT}, and the overbound is the safer choice")
+        }
         None => too_few("model"),
     }
 }
@@ -71,9 +76,8 @@ pub fn of_five_terms(behind: &str, adequate: Option<bool>) -> String {
     match adequate {
         Some(true) => format!("The five-term model{behind} is {ADEQUATE} for this record."),
         Some(false) => format!(
-            "The five-term model{behind} is {}: the record has another effect, which \
-             distorts the coefficients. `compare` shows where, and `diagnose` looks for it.",
-            word(adequate)
+            "The five-term model{behind} is {INADEQUATE}: {ANOTHER_EFFECT}, which \
+             distorts the coefficients. `compare` shows where, and `diagnose` looks for it."
         ),
         None => format!(
             "There are too few octaves to judge the five-term model{behind}: record longer."
@@ -90,9 +94,15 @@ pub fn too_few(model: &str) -> String {
 pub const UNDECIDED: &str =
     "not decided, because the five terms do not explain the record: see `diagnose`";
 
+/// What is said of a curve that is not one of a gyro at rest.
+pub const INVALID_CURVE: &str = "the curve is not valid";
+
+/// A limit that is not decided, because the curve is not valid.
+pub const UNDECIDED_INVALID: &str = "not decided, because the curve is not valid";
+
 /// The verdicts of a diagnosis on these terms of a model with this p-value, in a sentence each.
 pub mod sentence {
-    use super::{ADEQUATE, word};
+    use super::{ADEQUATE, INADEQUATE, INVALID_CURVE};
 
     /// The terms explain the curve of a record in which something happened.
     pub fn mixture(terms: &str, p: &str) -> String {
@@ -106,7 +116,7 @@ pub mod sentence {
 
     /// The terms do not explain the record, for this reason.
     pub fn inadequate(terms: &str, p: &str, why: &str) -> String {
-        format!("the {terms} are {} (p {p}), {why}.", word(Some(false)))
+        format!("the {terms} are {INADEQUATE} (p {p}), {why}.")
     }
 
     /// What was found explains the record.
@@ -126,7 +136,12 @@ pub mod sentence {
 
     /// The curve is not valid.
     pub fn invalid(reason: &str) -> String {
-        format!("no effect was looked for, because the curve is not valid: {reason}.")
+        format!("no effect was looked for, because {INVALID_CURVE}: {reason}.")
+    }
+
+    /// The same of a curve that is shown.
+    pub fn invalid_curve(reason: &str) -> String {
+        format!("{INVALID_CURVE}: {reason}; no effect was looked for.")
     }
 
     /// Something happened during the record, and this is said of its curve.

@@ -1,5 +1,6 @@
 //! Parts of a log that are left out with `--from`, `--to` and `--drop`, and messages that tell which.
 
+use allanite::diagnosis::Verdict;
 use program::{json, output, refusal, run};
 use serde_json::Value;
 use std::{fmt::Write as _, fs, path::Path};
@@ -133,7 +134,11 @@ fn a_knock_a_pick_up_and_a_spike_are_told_with_the_options_that_leave_them_out()
             );
         }
         let diagnosed = json(folder.path(), &with(&["diagnose", "log.csv"], &options));
-        assert_eq!(diagnosed["axes"][0]["verdict"], "adequate", "{options:?}");
+        assert_eq!(
+            diagnosed["axes"][0]["verdict"],
+            Verdict::Adequate.name(),
+            "{options:?}"
+        );
     }
 }
 

@@ -3,10 +3,12 @@
 
 use allanite::{
     Model,
-    diagnosis::{Options, Step, alternative},
+    diagnosis::{Options, Step, Verdict, alternative},
     effect::CATALOGUE,
 };
-use allanite_host::{curve_file::CurveFile, diagnosis::diagnose};
+use allanite_host::{
+    curve_file::CurveFile, diagnosis::diagnose, number::probability, verdict::sentence,
+};
 use allanite_log::OCTAVES;
 use program::{ADIS16405, json, output, refusal};
 use serde_json::Value;
@@ -73,7 +75,7 @@ fn hidden_effect_is_named_with_its_shape_and_size() {
         let excess = |step: &Value| number(&step["chi2"]) - number(&step["dof"]);
         assert!(excess(last) < 0.5 * excess(first), "{name}");
         assert_eq!(first["added"].as_str(), Some(missing[0]));
-        assert_eq!(axis["verdict"], "improved");
+        assert_eq!(axis["verdict"], Verdict::Improved.name());
         let Some(found) = parameters(last, name).filter(|_| strong) else {
             assert!(!strong, "{name}: {missing:?}");
             continue;
@@ -106,12 +108,14 @@ fn no_effect_is_found_where_none_is_hidden() {
     hide(folder.path(), "3", &[]);
     let document = json(folder.path(), &["diagnose", "log.csv"]);
     let axis = &document["axes"][0];
-    assert_eq!(axis["verdict"], "adequate");
+    assert_eq!(axis["verdict"], Verdict::Adequate.name());
     assert_eq!(axis["steps"].as_array().unwrap().len(), 1);
     assert!(names(&axis["missing"]).is_empty() && names(&axis["ambiguous"]).is_empty());
     assert!(axis["steps"][0]["added"].is_null());
     let text = output(folder.path(), &["diagnose", "log.csv"]);
-    assert!(text.contains("gx: the five terms are adequate"), "{text}");
+    let p = probability(number(&axis["steps"][0]["p_value"]));
+    let said = format!("gx: {}", sentence::adequate("five terms", &p));
+    assert!(text.contains(&said), "{text}");
 }
 
 #[test]
@@ -173,7 +177,7 @@ fn no_more_effects_are_added_than_allowed() {
         folder.path(),
         &["diagnose", "log.csv", "--max-effects", "0"],
     );
-    assert_eq!(document["axes"][0]["verdict"], "unexplained");
+    assert_eq!(document["axes"][0]["verdict"], Verdict::Unexplained.name());
     let document = json(
         folder.path(),
         &["diagnose", ADIS16405, "--max-effects", "1"],
@@ -212,11 +216,11 @@ fn filter_of_a_real_gyro_is_found_and_an_oscillation_on_one_axis() {
 fn second_real_gyro_has_lines_on_two_axes_and_is_adequate_on_the_third() {
     let document = json(Path::new("."), &["diagnose", MPU6050]);
     let axes = document["axes"].as_array().unwrap();
-    assert_eq!(axes[1]["verdict"], "adequate");
+    assert_eq!(axes[1]["verdict"], Verdict::Adequate.name());
     // The octaves do not show the line of the first axis, and that of the last one no better than to 10 %.
     // Beside its line, the last axis has something broad.
     for (axis, line_hz) in [(0, 20.0), (2, 31.35)] {
-        assert_eq!(axes[axis]["verdict"], "improved");
+        assert_eq!(axes[axis]["verdict"], Verdict::Improved.name());
         let (_, last) = steps(&axes[axis]);
         let frequency_hz = number(&parameters(last, "sinusoid").unwrap()["frequency_hz"]);
         assert!((frequency_hz - line_hz).abs() < 0.1, "{frequency_hz}");

@@ -1,6 +1,9 @@
 //! Tests `diagnose` with the evidence beside the curve: whether the record is valid, and whether it
 //! depends on a covariate.
 
+use crate::INVALID;
+use allanite::diagnosis::Verdict;
+use allanite_host::verdict::{ADEQUATE, NOT_STATIONARY, brief, sentence};
 use program::{json, measure_without_spectrum, output, refusal, run};
 use serde_json::Value;
 use std::{fs, path::Path};
@@ -64,7 +67,7 @@ fn a_disturbed_record_is_invalid_and_blames_no_effect() {
         change(folder.path(), disturb);
         let document = json(folder.path(), &["diagnose", "log.csv"]);
         let axis = &document["axes"][0];
-        assert_eq!(axis["verdict"], "invalid", "{name}");
+        assert_eq!(axis["verdict"], INVALID.name(), "{name}");
         assert!(list(&axis["missing"]).is_empty() && list(&axis["ambiguous"]).is_empty());
         let steps = axis["steps"].as_array().unwrap();
         assert_eq!(steps.len(), 1);
@@ -77,7 +80,8 @@ fn a_disturbed_record_is_invalid_and_blames_no_effect() {
             "{name}: {notes:?}"
         );
         let text = output(folder.path(), &["diagnose", "log.csv"]);
-        assert!(text.contains("because the curve is not valid: "), "{text}");
+        let said = sentence::invalid("");
+        assert!(text.contains(said.trim_end_matches('.')), "{text}");
         assert!(notes.iter().all(|note| text.contains(note)), "{text}");
     }
 }
@@ -122,10 +126,10 @@ fn noise_below_half_a_count_is_invalid() {
     );
     let text = output(folder.path(), &["fit", "log.csv", "--scale", "0.2"]);
     assert!(text.contains("The curve is not valid: the noise is below half a count"));
-    assert!(!text.contains("adequate"), "{text}");
+    assert!(!text.contains(ADEQUATE), "{text}");
     let diagnosed = json(folder.path(), &["diagnose", "log.csv", "--scale", "0.2"]);
     let axis = &diagnosed["axes"][0];
-    assert_eq!(axis["verdict"], "invalid");
+    assert_eq!(axis["verdict"], INVALID.name());
     let notes = list(&axis["notes"]);
     assert!(notes[0].contains("below half a count"), "{notes:?}");
 }
@@ -140,7 +144,7 @@ fn floats_that_were_rounded_more_coarsely_than_their_noise_are_invalid() {
     });
     let diagnosed = json(folder.path(), &["diagnose", "log.csv"]);
     let axis = &diagnosed["axes"][0];
-    assert_eq!(axis["verdict"], "invalid");
+    assert_eq!(axis["verdict"], INVALID.name());
     let notes = list(&axis["notes"]);
     assert!(notes[0].contains("below half a count"), "{notes:?}");
     let fitted = output(folder.path(), &["fit", "log.csv"]);
@@ -350,7 +354,7 @@ fn motion_about_one_axis_is_told_of_all_axes_and_export_refuses_it() {
     let fitted = json(folder.path(), &["fit", "log.csv"]);
     for at in 0..3 {
         let axis = &diagnosed["axes"][at];
-        assert_eq!(axis["verdict"], "invalid");
+        assert_eq!(axis["verdict"], INVALID.name());
         let event = &axis["events"][0];
         assert_eq!(event["what"], "motion");
         let at_s = event["at_s"].as_f64().unwrap();
@@ -367,7 +371,7 @@ fn motion_about_one_axis_is_told_of_all_axes_and_export_refuses_it() {
         3,
         "{text}"
     );
-    assert!(!text.contains("adequate"), "{text}");
+    assert!(!text.contains(ADEQUATE), "{text}");
     let export = ["export", "log.csv", "--format", "kalibr"];
     let refused = refusal(folder.path(), &export);
     assert!(
@@ -405,7 +409,7 @@ fn a_rate_of_change_is_a_covariate_and_an_unrelated_column_is_not_blamed() {
         folder.path(),
         &["diagnose", "log.csv", "--covariates", "temp_C"],
     );
-    assert_eq!(document["axes"][0]["verdict"], "adequate");
+    assert_eq!(document["axes"][0]["verdict"], Verdict::Adequate.name());
 }
 
 #[test]
@@ -463,7 +467,7 @@ fn a_record_in_which_something_happened_is_not_called_adequate() {
     let folder = TempDir::new().unwrap();
     simulate(folder.path(), &[]);
     let steady = json(folder.path(), &["diagnose", "log.csv"]);
-    assert_eq!(steady["axes"][0]["verdict"], "adequate");
+    assert_eq!(steady["axes"][0]["verdict"], Verdict::Adequate.name());
     assert_eq!(steady["axes"][0]["events"].as_array().unwrap().len(), 0);
 
     // The rate steps by 0.3 °/s at 300 s. A step of this size hardly moves χ², because the walk and the ramp take it up.
@@ -472,7 +476,7 @@ fn a_record_in_which_something_happened_is_not_called_adequate() {
     });
     let document = json(folder.path(), &["diagnose", "log.csv"]);
     let axis = &document["axes"][0];
-    assert_eq!(axis["verdict"], "not_stationary");
+    assert_eq!(axis["verdict"], NOT_STATIONARY);
     let event = &axis["events"][0];
     assert_eq!(event["what"], "step");
     let [at_s, size] = ["at_s", "size"].map(|key| event[key].as_f64().unwrap());
@@ -492,9 +496,8 @@ fn a_record_in_which_something_happened_is_not_called_adequate() {
         "{notes:?}"
     );
     let text = output(folder.path(), &["diagnose", "log.csv"]);
-    assert!(
-        text.contains("gx: the record is not stationary: the rate stepped by 0.29"),
-        "{text}"
-    );
-    assert!(!text.contains("no effect is missing"), "{text}");
+    let said = sentence::not_stationary("the rate stepped by 0.29", "");
+    let said = said.trim_end_matches("; ");
+    assert!(text.contains(&format!("gx: {said}")), "{text}");
+    assert!(!text.contains(&brief(Verdict::Adequate, "")), "{text}");
 }

@@ -1,5 +1,7 @@
 //! Tests `--filter`: a filter that is known belongs to the model, and one that does not fit is refused with what fits.
 
+use allanite::diagnosis::Verdict;
+use allanite_host::verdict::{ADEQUATE, of_five_terms};
 use program::{json, output, refusal};
 use serde_json::Value;
 use std::path::Path;
@@ -50,7 +52,7 @@ fn filter_that_is_known_is_no_discovery() {
     let folder = TempDir::new().unwrap();
     record(folder.path(), &["--seed", "5"]);
     let known = diagnosed(folder.path(), &["--filter", "low_pass:cutoff_hz=8,poles=2"]);
-    assert_eq!(known["verdict"], "adequate", "{known}");
+    assert_eq!(known["verdict"], Verdict::Adequate.name(), "{known}");
     assert_eq!(known["missing"].as_array().unwrap().len(), 0);
     assert_eq!(known["filter"]["fits"], true);
     let filter = &known["filter"]["parameters"];
@@ -80,7 +82,7 @@ fn effects_behind_a_known_filter_are_found_beside_it() {
     assert_eq!(found["missing"], serde_json::json!(["sinusoid"]));
     assert_eq!(
         (&found["verdict"], &found["filter"]["fits"]),
-        (&"improved".into(), &true.into())
+        (&Verdict::Improved.name().into(), &true.into())
     );
     let line = &found["lines"][0];
     assert_near(&line["frequency_hz"], 2.7, 0.005);
@@ -99,7 +101,11 @@ fn filter_that_does_not_fit_is_refuted_by_the_one_that_does() {
         "decimation_filter:width_s=0.05,stages=2",
     ] {
         let refuted = diagnosed(folder.path(), &["--filter", given]);
-        assert_eq!(refuted["verdict"], "unexplained", "{given}: {refuted}");
+        assert_eq!(
+            refuted["verdict"],
+            Verdict::Unexplained.name(),
+            "{given}: {refuted}"
+        );
         assert_eq!(refuted["missing"], serde_json::json!([]), "{given}");
         assert_eq!(refuted["filter"]["fits"], false, "{given}");
         let better = &refuted["filter"]["better"];
@@ -124,15 +130,10 @@ fn every_command_that_fits_a_model_takes_a_filter() {
         fitted.contains("behind a low pass (cutoff 8 Hz, time constant 0.01989 s, poles 2)"),
         "{fitted}"
     );
-    assert!(
-        fitted.contains("The five-term model behind the low pass is adequate"),
-        "{fitted}"
-    );
+    let said = of_five_terms(" behind the low pass", Some(true));
+    assert!(fitted.contains(&said), "{fitted}");
     let plain = output(folder.path(), &["fit", "log.csv"]);
-    assert!(
-        plain.contains("The five-term model is not adequate"),
-        "{plain}"
-    );
+    assert!(plain.contains(&of_five_terms("", Some(false))), "{plain}");
     let compared = with(&["compare", "log.csv"]);
     assert!(
         compared.contains("with low pass: cutoff 8 Hz"),
@@ -152,7 +153,9 @@ fn every_command_that_fits_a_model_takes_a_filter() {
     );
     with(&["report", "log.csv", "--output", "page.html"]);
     let page = std::fs::read_to_string(folder.path().join("page.html")).unwrap();
-    assert!(page.contains("five terms behind the given low pass are adequate"));
+    assert!(page.contains(&format!(
+        "five terms behind the given low pass are {ADEQUATE}"
+    )));
 }
 
 /// A moving average that the program of the log took lets everything pass, quantization included. Known, it leaves the five
@@ -167,7 +170,7 @@ fn a_moving_average_of_the_whole_output_can_be_known() {
         &[&simulate[..], &[average, "--output", "log.csv"]].concat(),
     );
     let known = diagnosed(folder.path(), &["--filter", average]);
-    assert_eq!(known["verdict"], "adequate", "{known}");
+    assert_eq!(known["verdict"], Verdict::Adequate.name(), "{known}");
     assert_eq!(known["filter"]["fits"], true);
     let fitted = json(folder.path(), &["fit", "log.csv", "--filter", average]);
     let coefficients = fitted["axes"][0]["coefficients"].as_array().unwrap();

@@ -1,6 +1,10 @@
 //! Tests what `diagnose` says of a rate that follows a temperature with a lag, and of its record over time.
 
-use allanite_host::simulate::{Preset, Random, Simulator};
+use allanite::diagnosis::Verdict;
+use allanite_host::{
+    simulate::{Preset, Random, Simulator},
+    verdict::NOT_STATIONARY,
+};
 use program::{json, output};
 use rand::{RngExt, SeedableRng};
 use rand_distr::StandardNormal;
@@ -156,8 +160,8 @@ fn a_record_is_stationary_beside_what_follows_the_temperature() {
         let axis = record.diagnosed(folder.path());
         assert_eq!(axis["missing"], serde_json::json!(["covariate"]), "{lag_s}");
         assert_eq!(axis["events"], serde_json::json!([]), "{lag_s}");
-        assert_eq!(axis["verdict"], "improved", "{lag_s}");
+        assert_eq!(axis["verdict"], Verdict::Improved.name(), "{lag_s}");
         let blind = json(folder.path(), &["diagnose", "log.csv", "--no-covariates"]);
-        assert_eq!(blind["axes"][0]["verdict"], "not_stationary", "{lag_s}");
+        assert_eq!(blind["axes"][0]["verdict"], NOT_STATIONARY, "{lag_s}");
     }
 }

@@ -13,6 +13,14 @@ mod sealed;
 #[path = "../common/whole_page.rs"]
 mod whole_page;
 
+use allanite::{diagnosis::Verdict, integrity::Reason};
+
+/// The verdict on an axis that is not valid, whatever the reason is.
+const INVALID: Verdict = Verdict::Invalid(Reason::Spiked {
+    spikes: 0,
+    percent: 0,
+});
+
 mod bad_input;
 mod certify;
 mod command_line;

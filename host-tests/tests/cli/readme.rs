@@ -2,7 +2,7 @@
 
 use clap::Parser as _;
 use program::output;
-use std::{fs, path::Path};
+use std::{cmp::Reverse, fs, path::Path};
 use xtask::{
     CommandLine, cost,
     firmware::{
@@ -74,9 +74,40 @@ fn find(shown: &[&str], printed: &[&str]) -> Result<(), String> {
     Ok(())
 }
 
-/// Runs the commands of a page, of which there are at least so many.
+/// The place of the printed lines that have most words in common with those that a page shows.
+fn likest(shown: &[&str], printed: &[&str]) -> Option<usize> {
+    let common = |window: &[&str]| {
+        let lines = shown.iter().zip(window);
+        let words = lines.flat_map(|(one, other)| {
+            let others: Vec<&str> = other.split(' ').collect();
+            one.split(' ').filter(move |word| others.contains(word))
+        });
+        words.count()
+    };
+    let windows = printed.windows(shown.len()).enumerate();
+    let best = windows.max_by_key(|(at, window)| (common(window), Reverse(*at)));
+    best.map(|(at, _)| at)
+}
+
+/// Replaces the lines that a page shows, and that are not printed, by those most like them.
+fn update(page: &mut String, shown: &[&str], printed: &[&str]) {
+    let mut rest = printed;
+    for part in shown.split(|line| *line == "...") {
+        let Some(at) = likest(part, rest).filter(|_| !part.is_empty()) else {
+            continue;
+        };
+        let (now, behind) = rest[at..].split_at(part.len());
+        *page = page.replace(&part.join("\n"), &now.join("\n"));
+        rest = behind;
+    }
+}
+
+/// Runs the commands of a page, of which there are at least so many. With `ALLANITE_PAGES=write`, the page is changed to what
+/// they print now.
 fn commands_print_what_is_shown(path: &str, least: usize) {
     let page = text(path);
+    let mut written = page.clone();
+    let writes = std::env::var_os("ALLANITE_PAGES").is_some_and(|value| value == "write");
     let examples = examples(&page);
     assert!(examples.len() >= least, "{path}: {examples:?}");
     for (command, shown) in examples {
@@ -84,12 +115,17 @@ fn commands_print_what_is_shown(path: &str, least: usize) {
         let printed = output(Path::new(ROOT), &arguments);
         let printed: Vec<&str> = printed.lines().map(str::trim_end).collect();
         assert!(shown.iter().filter(|line| **line != "...").count() >= 3);
-        if let Err(missing) = find(&shown, &printed) {
-            panic!(
-                "{path}: {command}: {missing}\nprinted:\n{}",
+        match find(&shown, &printed) {
+            Err(_) if writes => update(&mut written, &shown, &printed),
+            Err(missing) => panic!(
+                "{path}: {command}: {missing}; write it with ALLANITE_PAGES=write\nprinted:\n{}",
                 printed.join("\n")
-            );
+            ),
+            Ok(()) => {}
         }
+    }
+    if written != page {
+        fs::write(Path::new(ROOT).join(path), written).expect("a page");
     }
 }
 

@@ -1,8 +1,10 @@
 //! What `plot` draws of a record over time agrees with the log, and a record that is not valid says so first.
 
+use crate::INVALID;
 use crate::drawing::{
     coordinate, dots, drawn, elements, frames, labels, labels_below, number, part, simulate,
 };
+use allanite_host::verdict::{INVALID_CURVE, on_badge};
 use program::{json, output};
 use roxmltree::Document;
 use std::{fs, path::Path};
@@ -175,14 +177,17 @@ fn a_record_that_is_not_valid_says_so_first() {
     let printed = output(folder.path(), &["diagnose", "log.csv"]);
     let first = printed.lines().next().unwrap();
     assert!(first.contains(": not valid: "), "{first}");
-    assert!(printed.contains("\nthe curve is not valid: "), "{printed}");
+    assert!(
+        printed.contains(&format!("\n{INVALID_CURVE}: ")),
+        "{printed}"
+    );
     output(
         folder.path(),
         &["report", "log.csv", "--output", "page.html"],
     );
     let page = fs::read_to_string(folder.path().join("page.html")).unwrap();
-    let (_, lead) = page.split_once("record invalid").unwrap();
-    assert!(lead.contains("<p>the curve is not valid: "), "no lead");
+    let (_, lead) = page.split_once(on_badge(INVALID)).unwrap();
+    assert!(lead.contains(&format!("<p>{INVALID_CURVE}: ")), "no lead");
     simulate(folder.path(), &[]);
     let text = drawn(folder.path(), &["log.csv"]);
     assert!(!text.contains("not valid"));

@@ -15,6 +15,7 @@ mod promises;
 mod script;
 mod seam;
 mod source;
+mod verdict;
 mod words;
 
 use source::Crate;
@@ -337,65 +338,4 @@ fn tests_may_import_anything() {
         ("b.rs", "use crate::a::f; pub fn g() {}"),
     ]);
     assert_eq!(found, [""; 0]);
-}
-
-/// The file with the words that say what a verdict is.
-const CATALOGUE: &str = "verdict.rs";
-
-#[test]
-fn the_words_of_a_verdict_stand_in_one_file() {
-    let mut elsewhere = Vec::new();
-    for package in ["log", "plot", "host", "cli", "fleet", "../src/python"] {
-        let of = Crate::read(&Path::new(HOST).join(package).join("src"));
-        for (name, file) in &of.files {
-            let found = words::rust(file);
-            if (package, name.as_str()) == ("host", CATALOGUE) {
-                for phrase in words::PHRASES {
-                    assert!(found.contains(&phrase), "no verdict says {phrase:?}");
-                }
-                continue;
-            }
-            elsewhere.extend(
-                found
-                    .iter()
-                    .map(|phrase| format!("{package}/{name}: {phrase:?}")),
-            );
-        }
-    }
-    for (folder, end) in [
-        ("../src/python/python", ".py"),
-        ("cli/src/report", ".js"),
-        ("page", ".js"),
-        ("page", ".html"),
-    ] {
-        elsewhere.extend(words::others(&script::files(
-            &Path::new(HOST).join(folder),
-            end,
-        )));
-    }
-    assert_eq!(elsewhere, [""; 0]);
-}
-
-#[test]
-fn a_verdict_in_another_file_is_found() {
-    let text = "/// It is adequate now.\nfn f() { format!(\"the model is adequate\"); g(\"too short to judge\") }";
-    let of = Crate::of([("lib.rs", text)].into_iter());
-    assert_eq!(
-        words::rust(&of.files["lib.rs"]),
-        [" adequate", "too short to judge"]
-    );
-    let files = [
-        (
-            "a.py",
-            "\"\"\"It is not adequate.\"\"\"\n# It explains the record.\nsaid = \"they explain the record\"",
-        ),
-        ("b.html", "<p>an adequate model</p>"),
-    ];
-    let files = files.map(|(name, text)| (name.to_owned(), text.to_owned()));
-    let expected = [
-        "a.py: \"explain the record\"",
-        "b.html: \"adequate \"",
-        "b.html: \" adequate\"",
-    ];
-    assert_eq!(words::others(&files.into()), expected);
 }

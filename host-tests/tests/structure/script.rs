@@ -19,7 +19,8 @@ pub(crate) fn files(folder: &Path, end: &str) -> Files {
             fs::read_dir(&next).unwrap_or_else(|error| panic!("{}: {error}", next.display()))
         {
             let path = entry.unwrap().path();
-            if path.is_dir() {
+            // What was built is no file of the project.
+            if path.is_dir() && !path.ends_with("target") {
                 folders.push(path);
             } else if path.to_string_lossy().ends_with(end) {
                 let name = path

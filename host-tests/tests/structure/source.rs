@@ -134,6 +134,17 @@ impl Module {
     }
 }
 
+/// The files of Rust below a folder with their items, those of tests included.
+pub(crate) fn items(root: &Path) -> BTreeMap<String, Vec<Item>> {
+    let mut files = Vec::new();
+    collect(root, root, &mut files);
+    let parsed = files.into_iter().map(|(name, text)| {
+        let file = syn::parse_file(&text).unwrap_or_else(|error| panic!("{name}: {error}"));
+        (name, file.items)
+    });
+    parsed.collect()
+}
+
 fn collect(root: &Path, folder: &Path, files: &mut Vec<(String, String)>) {
     for entry in fs::read_dir(folder).expect("a folder") {
         let path = entry.expect("an entry").path();

@@ -1,6 +1,6 @@
 //! Records of one, two and three effects, as other people's were: what is said of each, word by word.
 
-use allanite::Coefficient;
+use allanite::{Coefficient, diagnosis::Verdict};
 use allanite_host::simulate::{Coefficients, Hidden, Simulator};
 use allanite_studies::{measured::Measured, said::Said};
 use program::json;
@@ -234,7 +234,7 @@ fn a_rise_that_the_catalogue_has_nearly_leaves_the_plateau_to_read() {
         fs::write(folder.path().join("log.csv"), text).unwrap();
         let document = json(folder.path(), &["diagnose", "log.csv"]);
         let axis = &document["axes"][0];
-        assert_ne!(axis["verdict"], "adequate", "{axis}");
+        assert_ne!(axis["verdict"], Verdict::Adequate.name(), "{axis}");
         let notes = axis["notes"].as_array().unwrap().iter();
         let words = notes.filter_map(|note| {
             note.as_str()?

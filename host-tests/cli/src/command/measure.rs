@@ -12,6 +12,7 @@ use allanite_host::{
     curve_file::{AxisCurve, CurveFile},
     disturbance::invalid,
     number::number,
+    verdict::INVALID_CURVE,
 };
 use allanite_log::{
     Evidence,
@@ -106,7 +107,7 @@ fn measured(log: &Path, about_log: &LogArguments) -> Result<Vec<AxisCurve>, Fail
             let disturbance = evidence.disturbance.as_ref();
             let about = (curve.axis.as_str(), curve.rate_hz, curve.unit);
             let reason = invalid(&reason, disturbance, about);
-            let note = format!("axis {}: the curve is not valid: {reason}", curve.axis);
+            let note = format!("axis {}: {INVALID_CURVE}: {reason}", curve.axis);
             report(format_args!("{}{}", Place::file(log), one_line(&note)));
         }
         curve

@@ -1,6 +1,7 @@
 //! Queries in this process.
 
 use crate::logs::{Fleet, RATE_HZ, Row, SCALE, found, random, write, write_columns};
+use allanite::{diagnosis::Verdict, integrity::Reason};
 use allanite_fleet::cluster::local;
 use allanite_host::interface::{Record, options::Fitting};
 use allanite_log::{pieces::Pieces, unit::Unit};
@@ -14,6 +15,12 @@ use datafusion::{
 };
 use rand::RngExt as _;
 use std::{path::Path, sync::Arc};
+
+/// The verdict on an axis that is not valid, whatever the reason is.
+const INVALID: Verdict = Verdict::Invalid(Reason::Spiked {
+    spikes: 0,
+    percent: 0,
+});
 
 pub(crate) const STATES: &str = "SELECT device, axis, allan_state(start, counts, rate, scale) AS state FROM logs GROUP BY device, axis ORDER BY device, axis";
 
@@ -277,7 +284,7 @@ async fn samples_that_hang_are_told() {
     for row in 0..6 {
         let hangs = [2, 3].contains(&row);
         assert_eq!(invalid.is_valid(row), hangs);
-        assert_eq!(verdict.value(row) == "invalid", hangs);
+        assert_eq!(verdict.value(row) == INVALID.name(), hangs);
         assert!(!hangs || invalid.value(row).contains("stuck values"));
     }
 }

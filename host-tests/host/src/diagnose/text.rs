@@ -6,7 +6,7 @@ use super::{
     pictures::Pictures,
     words::{Finding, candidate_name, limits, shown_p, unexplained, verdict},
 };
-use crate::{fit, known_filter::described, number::two_digits, words};
+use crate::{fit, known_filter::described, number::two_digits, verdict::INVALID_CURVE, words};
 use allanite::{
     diagnosis::{Candidate, Step},
     fit::Fit,
@@ -39,7 +39,7 @@ fn print_axis(diagnosed: &Diagnosed, output: &mut impl Write) -> io::Result<()> 
         writeln!(output, "given: {}", described(filter))?;
     }
     if let Some(reason) = diagnosed.invalid() {
-        writeln!(output, "the curve is not valid: {reason}")?;
+        writeln!(output, "{INVALID_CURVE}: {reason}")?;
     }
     writeln!(
         output,

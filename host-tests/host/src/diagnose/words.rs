@@ -313,7 +313,7 @@ pub fn lead(diagnosed: &Diagnosed) -> String {
         return verdict;
     };
     if let Some(reason) = diagnosed.invalid() {
-        return format!("the curve is not valid: {reason}; no effect was looked for.");
+        return sentence::invalid_curve(&reason);
     }
     if matches!(diagnosed.verdict, Verdict::Adequate) {
         return verdict;

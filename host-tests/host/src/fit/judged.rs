@@ -1,6 +1,11 @@
 //! A coefficient beside its limit, for a station that measures once and decides.
 
-use crate::{limit::LimitArgument, number::number, units, verdict::UNDECIDED};
+use crate::{
+    limit::LimitArgument,
+    number::number,
+    units,
+    verdict::{UNDECIDED, UNDECIDED_INVALID},
+};
 use allanite::fit::Fit;
 use allanite_log::{failure::Failure, unit::Unit};
 use serde::Serialize;
@@ -29,7 +34,7 @@ impl Conformity {
             Self::Pass => "pass",
             Self::GuardBand => "guard band: a longer record may decide",
             Self::Misfit => UNDECIDED,
-            Self::Invalid => "not decided, because the curve is not valid",
+            Self::Invalid => UNDECIDED_INVALID,
             Self::Fail => "fail",
         }
     }

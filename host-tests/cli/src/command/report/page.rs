@@ -174,7 +174,7 @@ fn introduction() -> Markup {
                 "changes from one average to the next. The spectrum is the root of the one-sided power "
                 "spectral density of the same record: a line is narrow there, a resonance is a hump, and "
                 "a filter is an edge. In a simple record, the five noise terms of IEEE 952 add up to both. "
-                "Where the measured dots leave the model’s line, the record has another effect. The bars "
+                "Where the measured dots leave the model’s line, " (verdict::ANOTHER_EFFECT) ". The bars "
                 "are standard errors of the measurement. χ² is the squared distance of the dots from the "
                 "line, each weighted by its error: for " (verdict::ADEQUATE_MODEL) ", χ² is about as large as the "
                 "number of degrees of freedom. All steps share one scale of residuals, linear near zero "

@@ -318,7 +318,14 @@ fn table(
 #[cfg(test)]
 mod tests {
     use super::{super::status::tests::status, *};
+    use allanite::diagnosis::Verdict;
+    use allanite_host::verdict::{ADEQUATE, brief};
     use ratatui::backend::TestBackend;
+
+    /// The end of a diagnosis that found nothing, and when it ended.
+    fn none_is_missing() -> String {
+        format!("{} (after 30.000 s)", brief(Verdict::Adequate, ""))
+    }
 
     fn drawn(width: u16, height: u16, status: &Status) -> Vec<String> {
         let mut terminal = Terminal::new(TestBackend::new(width, height)).unwrap();
@@ -352,7 +359,7 @@ mod tests {
         );
         for (name, first) in [("left", 21), ("right", 30)] {
             assert!(
-                rows[first].contains(&format!("┌{name}: adequate, p = 0.")),
+                rows[first].contains(&format!("┌{name}: {ADEQUATE}, p = 0.")),
                 "{text}"
             );
             assert!(
@@ -373,10 +380,7 @@ mod tests {
                 "{text}"
             );
             assert!(rows[first + 7].contains("largest difference: "), "{text}");
-            assert!(
-                rows[first + 8].contains("no effect is missing (after 30.000 s)"),
-                "{text}"
-            );
+            assert!(rows[first + 8].contains(&none_is_missing()), "{text}");
         }
     }
 
@@ -390,10 +394,7 @@ mod tests {
         for part in ["│N 2.", " °/√h ", " … "] {
             assert!(walk.contains(part), "{text}");
         }
-        assert!(
-            rows[29].contains("no effect is missing (after 30.000 s)"),
-            "{text}"
-        );
+        assert!(rows[29].contains(&none_is_missing()), "{text}");
         assert!(rows[28].contains("σ)"), "{text}");
         assert!(rows[39].trim_end().ends_with("saved 3 s ago"), "{text}");
     }

@@ -166,6 +166,8 @@ pub(super) mod tests {
         super::recording::{Numbers, Recording},
         *,
     };
+    use allanite::diagnosis::Verdict;
+    use allanite_host::verdict::{ADEQUATE, brief};
     use allanite_log::unit::Unit;
     use std::time::Duration;
 
@@ -204,8 +206,17 @@ pub(super) mod tests {
     fn line_has_every_axis_with_values_bounds_and_a_verdict() {
         let line = status().line();
         assert!(line.starts_with("30.000 s (3000 samples); invalid lines: 1, gaps: 1; left: Q "));
-        assert_eq!(line.matches("adequate, p = 0.").count(), 2, "{line}");
-        assert_eq!(line.matches(", no effect is missing").count(), 2, "{line}");
+        assert_eq!(
+            line.matches(&format!("{ADEQUATE}, p = 0.")).count(),
+            2,
+            "{line}"
+        );
+        assert_eq!(
+            line.matches(&format!(", {}", brief(Verdict::Adequate, "")))
+                .count(),
+            2,
+            "{line}"
+        );
         assert!(
             line.contains("; right: Q ") && line.contains(" N 2."),
             "{line}"

@@ -1,7 +1,7 @@
 //! Records in which nothing is hidden.
 
 use super::SYMBOLS;
-use allanite_host::simulate::Preset;
+use allanite_host::{simulate::Preset, verdict::NOT_STATIONARY_IN_WORDS};
 use allanite_studies::{
     clean::{self, Absent},
     mixtures::{self, Stored, Terms},
@@ -79,7 +79,7 @@ pub(crate) fn print_mixtures(records: u64, seed: u64) {
         "samples",
         "aborted",
         "told",
-        "not stationary",
+        NOT_STATIONARY_IN_WORDS,
         "noise",
         "bursts",
         "step",

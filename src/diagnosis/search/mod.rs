@@ -11,6 +11,7 @@
 //! Hypotheses are judged by `−2 ln L` of the [gamma likelihood](likelihood), which sees deficits as well as excesses, plus
 //! two for each parameter and a [price](price::price) for each effect, which is what clean records reach by chance.
 
+mod beam;
 mod cross;
 mod grow;
 mod hypothesis;

@@ -1,8 +1,8 @@
 //! The whole search.
 
 use super::{
-    cross::suspects,
-    hypothesis::{AS_GOOD, Added, Hypothesis, MAX_ADDED, is_near},
+    beam::{Beams, Growth, MOST, OVER_SPECIAL_CASE},
+    hypothesis::{AS_GOOD, Added, Hypothesis},
     kind::{is_added, is_filter, is_white},
     likelihood::Workspace,
     limits::Limits,
@@ -25,29 +25,8 @@ use crate::{
 use core::ops::ControlFlow;
 use heapless::Vec;
 
-/// The largest number of effects of a hypothesis.
-const MOST: usize = MAX_ADDED + 1;
-/// The hypotheses of as many effects that grow side by side.
-const BEAM: usize = 4;
-/// The best hypotheses of the continuum, narrow peaks left out, which grow too.
-const CONTINUA: usize = 2;
-/// A hypothesis that lags behind the best one of as many effects by more does not grow, and one that lags by more is not
-/// crossed. Where the best one is far from explaining the record, others may lag by as much as is left.
-const LAGS: Real = 25.0;
-const LAGS_CROSSED: Real = 15.0;
-/// A hypothesis that is not better than the plain model by this much does not grow.
-const EVIDENCE: Real = 4.0;
-/// The growth ends when the best hypothesis of one more effect is worse than the best one by more. Octaves alone show two
-/// effects less well one by one.
-const WORSE: Real = 2.5;
-const WORSE_IN_OCTAVES: Real = 5.0;
-/// The sets of additions that are crossed with all filters, for each number of effects.
-const CROSSED: usize = 3;
 /// The hypotheses that are pruned at the end.
 const PRUNED: usize = 5;
-
-/// The lead in cost that an effect needs over its own special case.
-const OVER_SPECIAL_CASE: Real = 5.0;
 
 /// The alternatives that are reported.
 pub(crate) const MAX_ALTERNATIVES: usize = 6;
@@ -64,26 +43,8 @@ pub(crate) struct Found {
 /// A search, with its memory.
 pub(crate) struct Search<const B: usize> {
     work: Workspace<B>,
-    /// The best hypotheses of no effect, of one effect and so on.
-    beams: [Pool<BEAM>; MOST + 1],
+    beams: Beams,
     shapes: Vec<Term, MAX_VARIANTS>,
-}
-
-/// Keeps a hypothesis among those of as many effects. Returns the score that others have to beat.
-fn enter(beams: &mut [Pool<BEAM>], hypothesis: &Hypothesis) -> Real {
-    match beams.get_mut(list::count(hypothesis.terms())) {
-        Some(beam) => {
-            beam.enter(hypothesis);
-            beam.bar()
-        }
-        None => Real::INFINITY,
-    }
-}
-
-/// The lowest score of some hypotheses.
-fn lowest(hypotheses: &[Hypothesis]) -> Real {
-    let scores = hypotheses.iter().map(|hypothesis| hypothesis.score);
-    scores.fold(Real::INFINITY, Real::min)
 }
 
 fn cost(hypothesis: &Hypothesis) -> Real {
@@ -123,16 +84,7 @@ impl<const B: usize> Search<B> {
                 .filter(move |effect| has_white && is_filter(*effect) && !effect.passes_all());
             filters.flat_map(|effect| Variant::of(effect, &observation.span))
         };
-        let is_slow = |effect: &dyn Effect| {
-            let first = effect.parameters().first();
-            first.is_some_and(|first| first.unit == "s") && effect.parameters().len() == 1
-        };
-        let noises: Vec<&'static dyn Effect, 4> = list::fill(
-            effects
-                .iter()
-                .copied()
-                .filter(|effect| is_added(*effect) && is_slow(*effect)),
-        );
+        let noises = slow_noises(effects);
         let mut solver = Solver {
             observation,
             work,
@@ -153,148 +105,66 @@ impl<const B: usize> Search<B> {
         for beam in beams.iter_mut() {
             beam.clear();
         }
-
-        // The filters of the continuum, and the best continua.
-        let mut plain: Option<Hypothesis> = None;
-        let mut continua: Vec<(Hypothesis, Real), CONTINUA> = Vec::new();
+        let mut growth = Growth::NEW;
         solver.start(&mut filters(), &noises, effects, &mut |whole, continuum| {
-            if plain.is_none() {
-                plain = Some(whole.clone());
-            }
-            list::rank(&mut continua, (whole.clone(), continuum), |other| {
-                other.1 > continuum
-            });
-            enter(beams, whole)
+            growth.begin(beams, whole, continuum)
         })?;
-        let Some(plain) = plain else {
+        let Some(plain) = growth.plain.take() else {
             return ControlFlow::Break(());
         };
-
-        // One more effect on each of the best hypotheses of as many effects.
-        let mut crossed: Vec<Added, { CROSSED * (MOST + 1) }> = Vec::new();
-        let mut best = plain.score;
         for count in 0..=MOST {
-            let Some((lower, higher)) = beams.split_at_mut_checked(count.saturating_add(1)) else {
-                break;
-            };
-            let Some(beam) = lower.last_mut() else { break };
-            solver.pass_all(beam, effects)?;
-            let lead = lowest(beam.as_slice());
-            best = best.min(lead);
-            let left = (best - observation.expected_deviance()).max(0.0);
-            let is_worth = |hypothesis: &&Hypothesis| {
-                let is_plain = list::count(hypothesis.terms()) == 0;
-                is_plain
-                    || (hypothesis.score < plain.score - EVIDENCE
-                        && hypothesis.score < lead + LAGS + left)
-            };
-            // A general form that gains little over its special case tells the same story.
-            let is_told = |hypothesis: &Hypothesis, known: &[Hypothesis]| {
-                known.iter().any(|other| {
-                    hypothesis.is_general_form_of(other)
-                        && other.score < hypothesis.score + OVER_SPECIAL_CASE
-                })
-            };
-            let others = continua.iter().map(|(hypothesis, _)| hypothesis);
-            let of_count = others.filter(|other| list::count(other.terms()) == count);
-            let known = beam.as_slice();
-            let more = of_count.filter(|other| !known.iter().any(|known| known.is_like(other)));
-            let parents: Vec<Hypothesis, { BEAM + CONTINUA }> = list::fill(
-                known
-                    .iter()
-                    .chain(more)
-                    .filter(|hypothesis| is_worth(hypothesis) && !is_told(hypothesis, known))
-                    .cloned(),
-            );
-            for parent in parents.iter().filter(|_| count < MOST) {
-                solver.grow(parent, effects, &mut |hypothesis| {
-                    let of = list::count(hypothesis.terms());
-                    let later = of.checked_sub(count.saturating_add(1));
-                    let pool = match later.and_then(|later| higher.get_mut(later)) {
-                        Some(pool) => pool,
-                        // A more general effect in the place of one of the parent's.
-                        None if of == count => &mut *beam,
-                        None => return Real::INFINITY,
-                    };
-                    pool.enter(hypothesis);
-                    pool.bar()
-                })?;
-            }
-            // The best sets of additions behind the other filters.
-            let mut sets: Vec<(Added, Hypothesis), CROSSED> = Vec::new();
-            let top = lowest(beam.as_slice());
-            for hypothesis in beam.as_slice() {
-                if is_told(hypothesis, beam.as_slice()) {
-                    continue;
-                }
-                let broad = suspects(&hypothesis.added, observation.interval_s);
-                for added in [hypothesis.added.clone(), broad] {
-                    let is_known = crossed.iter().any(|known| is_near(known, &added));
-                    let is_close = hypothesis.score < top + LAGS_CROSSED + left;
-                    if !added.is_empty() && !is_known && is_close && !sets.is_full() {
-                        let _ = crossed.push(added.clone());
-                        let _ = sets.push((added, hypothesis.clone()));
-                    }
-                }
-            }
-            for (added, from) in &sets {
-                let is_own = added.len() == from.added.len();
-                solver.cross(added, from, is_own, &mut |hypothesis| {
-                    enter(beams, hypothesis)
-                })?;
-            }
-            let next = beams.get(count.saturating_add(1));
-            let next = next.map_or(Real::INFINITY, |beam| lowest(beam.as_slice()));
-            let worse = if observation.has_bins() {
-                WORSE
-            } else {
-                WORSE_IN_OCTAVES
-            };
-            if next > best + worse {
+            if !growth.go_on(&plain, &mut solver, beams, effects, count)? {
                 break;
             }
         }
 
-        // The cheapest of all, without what they do not need.
-        let mut cheapest: Vec<&Hypothesis, PRUNED> = Vec::new();
-        for hypothesis in beams.iter().flat_map(Pool::as_slice) {
-            list::rank(&mut cheapest, hypothesis, |other| {
-                other.cost > hypothesis.cost
-            });
-        }
-        let mut finals: Vec<Hypothesis, PRUNED> = Vec::new();
-        solver.bars = NO_BARS;
-        for hypothesis in &cheapest {
-            let pruned = solver.prune((*hypothesis).clone())?;
-            match finals.iter_mut().find(|other| other.is_like(&pruned)) {
-                Some(other) if pruned.cost < other.cost => *other = pruned,
-                Some(_) => {}
-                None => {
-                    let _ = finals.push(pruned);
-                }
-            }
-        }
+        let cheapest = cheapest(beams);
+        let finals = pruned(&mut solver, &cheapest)?;
         let mut found = chosen(&finals, &cheapest, &plain, limits.ambiguity);
         found.white = solver.range_of_white(&found.best, &found.alternatives)?;
         ControlFlow::Continue(found)
     }
 }
 
-impl<const B: usize> Solver<'_, '_, '_, B> {
-    /// Lets all noise pass the filters of the best hypotheses of as many effects.
-    fn pass_all(
-        &mut self,
-        beam: &mut Pool<BEAM>,
-        effects: &[&'static dyn Effect],
-    ) -> ControlFlow<()> {
-        let known: Vec<Hypothesis, BEAM> = list::fill(beam.as_slice().iter().cloned());
-        for hypothesis in known.iter().filter(|known| !known.added.is_empty()) {
-            if let Some(of_all) = self.passing(effects, hypothesis)? {
-                beam.enter(&of_all);
+/// The effects that are added as noise and have nothing but a time.
+fn slow_noises(effects: &[&'static dyn Effect]) -> Vec<&'static dyn Effect, 4> {
+    let is_slow = |effect: &dyn Effect| {
+        let first = effect.parameters().first();
+        first.is_some_and(|first| first.unit == "s") && effect.parameters().len() == 1
+    };
+    let noises = effects.iter().copied();
+    list::fill(noises.filter(|effect| is_added(*effect) && is_slow(*effect)))
+}
+
+/// The cheapest of all hypotheses.
+fn cheapest(beams: &Beams) -> Vec<&Hypothesis, PRUNED> {
+    let mut cheapest = Vec::new();
+    for hypothesis in beams.iter().flat_map(Pool::as_slice) {
+        list::rank(&mut cheapest, hypothesis, |other: &&Hypothesis| {
+            other.cost > hypothesis.cost
+        });
+    }
+    cheapest
+}
+
+/// Hypotheses without what they do not need, of each kind the cheapest one.
+fn pruned<const B: usize>(
+    solver: &mut Solver<'_, '_, '_, B>,
+    cheapest: &[&Hypothesis],
+) -> ControlFlow<(), Vec<Hypothesis, PRUNED>> {
+    let mut finals: Vec<Hypothesis, PRUNED> = Vec::new();
+    solver.bars = NO_BARS;
+    for hypothesis in cheapest {
+        let pruned = solver.prune((*hypothesis).clone())?;
+        match finals.iter_mut().find(|other| other.is_like(&pruned)) {
+            Some(other) if pruned.cost < other.cost => *other = pruned,
+            Some(_) => {}
+            None => {
+                let _ = finals.push(pruned);
             }
         }
-        ControlFlow::Continue(())
     }
+    ControlFlow::Continue(finals)
 }
 
 /// The best shape of an effect that is added to a model. A whole number above zero is kept. `None` if no shape adds anything.

@@ -76,6 +76,14 @@ impl Stage {
     }
 }
 
+/// What is to be done before the next stage. What is read goes to `byte`, and the frame was made.
+enum Next {
+    Read { register: u8 },
+    Write { register: u8, value: u8 },
+    Frame { bytes: usize },
+    Wait { us: u32 },
+}
+
 impl Start {
     pub(super) const fn new(
         description: &'static Description,
@@ -122,6 +130,101 @@ impl Start {
         }
     }
 
+    /// Compares the identity that was read.
+    fn compare<E>(&self) -> Result<Stage, Error<E>> {
+        let description = self.description;
+        let [found] = self.byte;
+        if !description.identities.contains(&found) {
+            return Err(Error::WrongIdentity {
+                sensor: description.name,
+                register: description.identity,
+                found,
+                expected: description.identities,
+            });
+        }
+        Ok(Stage::first(match description.upload {
+            Some(_) => List::Reset,
+            None => List::StartUp,
+        }))
+    }
+
+    /// An access of a write, and the stage after it.
+    fn access(&self, list: List, index: usize, access: usize) -> (Stage, Option<Next>) {
+        let Some(write) = self.write(list, index) else {
+            return (Self::after(list), None);
+        };
+        let next = write.accesses().get(access);
+        let Some(next) = next.filter(|_| write.is_sent(self.over_spi)) else {
+            let next = Stage::Write {
+                list,
+                index: index.saturating_add(1),
+                access: 0,
+            };
+            return (next, None);
+        };
+        let after = Stage::Write {
+            list,
+            index,
+            access: access.saturating_add(1),
+        };
+        let next = match next {
+            Access::Page => Next::Write {
+                register: Access::PAGE,
+                value: write.page.unwrap_or(0),
+            },
+            Access::Low => Next::Write {
+                register: Access::LOW,
+                value: write.register,
+            },
+            Access::Value => Next::Write {
+                register: write.target(),
+                value: write.merged(self.byte[0]),
+            },
+            Access::Read => Next::Read {
+                register: write.target(),
+            },
+            Access::Gap => Next::Wait { us: Access::GAP_US },
+            Access::Pause if write.wait_us == 0 => return (after, None),
+            Access::Pause => Next::Wait { us: write.wait_us },
+        };
+        (after, Some(next))
+    }
+
+    /// A step of the upload, and the stage after it.
+    fn upload(&mut self, step: usize) -> (Stage, Option<Next>) {
+        let at = step / 4 * BLOCK;
+        let upload = self.description.upload.as_ref();
+        let Some(upload) = upload.filter(|it| at < it.image.len()) else {
+            return (Stage::first(List::Close), None);
+        };
+        let after = Stage::Upload {
+            step: step.saturating_add(1),
+        };
+        let bytes = match step % 4 {
+            0 => self.put(upload.address, &block_address(at)),
+            2 => self.put(upload.data, upload.image.get(at..).unwrap_or_default()),
+            _ if upload.wait_us == 0 => return (after, None),
+            _ => return (after, Some(Next::Wait { us: upload.wait_us })),
+        };
+        (after, Some(Next::Frame { bytes }))
+    }
+
+    /// Compares the status after an upload.
+    fn accept<E>(&self) -> Result<Stage, Error<E>> {
+        if let Some(upload) = self.description.upload {
+            let found = self.byte[0] & upload.mask;
+            if found != upload.accepted {
+                return Err(Error::Upload {
+                    sensor: self.description.name,
+                    register: upload.status,
+                    found,
+                    expected: upload.accepted,
+                });
+            }
+        }
+        Ok(Stage::first(List::StartUp))
+    }
+
     /// Makes a frame of a register and at most a block of bytes for it. It returns the number of the bytes.
     fn put(&mut self, register: u8, bytes: &[u8]) -> usize {
         let [first, places @ ..] = &mut self.frame;
@@ -160,125 +263,51 @@ impl Procedure for Start {
     fn step<E>(&mut self) -> Result<Step<'_>, Error<E>> {
         let description = self.description;
         loop {
-            match self.stage {
-                Stage::Wake { is_reset } => {
-                    if let (true, Some(register)) = (self.over_spi, description.interface.spi_wake)
-                    {
-                        self.stage = Stage::Awake { is_reset };
-                        let bytes = &mut self.byte;
-                        return Ok(Step::Read { register, bytes });
+            let (after, next) = match self.stage {
+                Stage::Wake { is_reset } => match description.interface.spi_wake {
+                    Some(register) if self.over_spi => {
+                        (Stage::Awake { is_reset }, Some(Next::Read { register }))
                     }
-                    self.stage = Self::listening(is_reset);
-                }
+                    _ => (Self::listening(is_reset), None),
+                },
                 Stage::Awake { is_reset } => {
-                    self.stage = Self::listening(is_reset);
-                    return Ok(Step::Wait { us: WAKE_US });
+                    (Self::listening(is_reset), Some(Next::Wait { us: WAKE_US }))
                 }
                 Stage::Identify => {
-                    self.stage = Stage::Compare;
-                    return Ok(Step::Read {
-                        register: description.identity,
-                        bytes: &mut self.byte,
-                    });
+                    let register = description.identity;
+                    (Stage::Compare, Some(Next::Read { register }))
                 }
-                Stage::Compare => {
-                    let [found] = self.byte;
-                    if !description.identities.contains(&found) {
-                        return Err(Error::WrongIdentity {
-                            sensor: description.name,
-                            register: description.identity,
-                            found,
-                            expected: description.identities,
-                        });
-                    }
-                    self.stage = Stage::first(match description.upload {
-                        Some(_) => List::Reset,
-                        None => List::StartUp,
-                    });
-                }
+                Stage::Compare => (self.compare()?, None),
                 Stage::Write {
                     list,
                     index,
                     access,
-                } => {
-                    let Some(write) = self.write(list, index) else {
-                        self.stage = Self::after(list);
-                        continue;
-                    };
-                    let next = write.accesses().get(access);
-                    let Some(next) = next.filter(|_| write.is_sent(self.over_spi)) else {
-                        self.stage = Stage::Write {
-                            list,
-                            index: index.saturating_add(1),
-                            access: 0,
-                        };
-                        continue;
-                    };
-                    self.stage = Stage::Write {
-                        list,
-                        index,
-                        access: access.saturating_add(1),
-                    };
-                    let (register, value) = match next {
-                        Access::Page => (Access::PAGE, write.page.unwrap_or(0)),
-                        Access::Low => (Access::LOW, write.register),
-                        Access::Value => (write.target(), write.merged(self.byte[0])),
-                        Access::Read => {
-                            return Ok(Step::Read {
-                                register: write.target(),
-                                bytes: &mut self.byte,
-                            });
-                        }
-                        Access::Gap => return Ok(Step::Wait { us: Access::GAP_US }),
-                        Access::Pause if write.wait_us == 0 => continue,
-                        Access::Pause => return Ok(Step::Wait { us: write.wait_us }),
-                    };
-                    return Ok(Step::Write { register, value });
-                }
-                Stage::Upload { step } => {
-                    let at = step / 4 * BLOCK;
-                    let upload = description.upload.as_ref();
-                    let Some(upload) = upload.filter(|it| at < it.image.len()) else {
-                        self.stage = Stage::first(List::Close);
-                        continue;
-                    };
-                    self.stage = Stage::Upload {
-                        step: step.saturating_add(1),
-                    };
-                    let bytes = match step % 4 {
-                        0 => self.put(upload.address, &block_address(at)),
-                        2 => self.put(upload.data, upload.image.get(at..).unwrap_or_default()),
-                        _ if upload.wait_us == 0 => continue,
-                        _ => return Ok(Step::Wait { us: upload.wait_us }),
-                    };
-                    return Ok(Step::Frame {
-                        frame: self.frame.get(..=bytes).unwrap_or(&self.frame),
-                    });
-                }
+                } => self.access(list, index, access),
+                Stage::Upload { step } => self.upload(step),
                 Stage::Status => {
-                    self.stage = Stage::Accept;
-                    return Ok(Step::Read {
-                        register: description.upload.map_or(0, |it| it.status),
-                        bytes: &mut self.byte,
-                    });
+                    let register = description.upload.map_or(0, |it| it.status);
+                    (Stage::Accept, Some(Next::Read { register }))
                 }
-                Stage::Accept => {
-                    if let Some(upload) = description.upload {
-                        let found = self.byte[0] & upload.mask;
-                        if found != upload.accepted {
-                            return Err(Error::Upload {
-                                sensor: description.name,
-                                register: upload.status,
-                                found,
-                                expected: upload.accepted,
-                            });
-                        }
-                    }
-                    self.stage = Stage::first(List::StartUp);
-                }
+                Stage::Accept => (self.accept()?, None),
                 // The FIFO was emptied by its last write.
                 Stage::Discard if self.with_fifo => return Ok(Step::Done),
                 Stage::Discard => return self.sample.discard(),
+            };
+            self.stage = after;
+            match next {
+                Some(Next::Read { register }) => {
+                    let bytes = &mut self.byte;
+                    return Ok(Step::Read { register, bytes });
+                }
+                Some(Next::Write { register, value }) => {
+                    return Ok(Step::Write { register, value });
+                }
+                Some(Next::Frame { bytes }) => {
+                    let frame = self.frame.get(..=bytes).unwrap_or(&self.frame);
+                    return Ok(Step::Frame { frame });
+                }
+                Some(Next::Wait { us }) => return Ok(Step::Wait { us }),
+                None => {}
             }
         }
     }

@@ -81,6 +81,7 @@
 
 mod accumulate;
 mod arrays;
+mod assembly;
 mod axes;
 mod axis_names;
 #[cfg(feature = "bags")]

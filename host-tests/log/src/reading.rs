@@ -1,26 +1,22 @@
 //! Reads a table into the curves of its axes.
 
 use super::{
-    Axis, Covariates, Evidence, Log, MOST_AXES, OCTAVES, Options,
-    accumulate::{self, Passes},
+    Axis, CovariateChoice, Covariates, Log, MOST_AXES, Options,
+    accumulate::{self, Measured, Passes},
+    assembly::Assembly,
     axes::Taken,
     clock::Clock,
+    columns::AxisColumn,
     cuts::Dropped,
-    evidence::{self, Recorded, spread_motion},
-    faults, part,
-    quantum::Quantum,
+    evidence::{self, Recorded},
+    faults,
     scaling::{self, Origin, Scaling},
-    sums::Sums,
     table::Table,
     time_column::TimeColumn,
     tried::TriedColumns,
     watched, worker,
 };
-use crate::{
-    failure::{Failure, Place, plural},
-    unit::Sensor,
-};
-use allanite::Accumulator;
+use crate::failure::{Failure, Place, plural};
 use indicatif::ProgressBar;
 use std::path::Path;
 
@@ -45,73 +41,13 @@ pub(super) fn read_table(
     (first, watch): (Option<u64>, Option<Watched>),
     progress: &ProgressBar,
 ) -> Result<(Log, Vec<Axis>), Failure> {
-    let metadata = table.metadata();
-    let rate_hz = metadata.rate_hz(path, options)?;
-    if let Some(rate_hz) = rate_hz
-        && table.by_rows()
-    {
-        table.columns().check_rate(path, options, rate_hz)?;
-    }
-    table.columns().check_instances(path)?;
-    // If the rate is given, time stamps are read only if the options ask for them.
-    let time = match table.by_rows() && (rate_hz.is_none() || options.time.is_some()) {
-        true => table.columns().time(path, options)?,
-        false => None,
-    };
-    if rate_hz.is_none() && time.is_none() {
-        let why = match table.by_rows() {
-            true => table.columns().why_no_time(),
-            false => {
-                "the columns lie one behind the other, so that no stamps are read beside the axes"
-                    .into()
-            }
-        };
-        return Err(Place::file(path).failure(
-            format!("the sampling rate is not known: {why}"),
-            "give it with --rate HZ, or name a column of time stamps with --time",
-        ));
-    }
+    let (rate_hz, time) = sampling(table, path, options)?;
     let taken = taken(table, path, options, time.as_ref())?;
-    let axis_columns = taken.axes;
-    if axis_columns.len() > MOST_AXES {
-        return Err(Place::file(path).failure(
-            format!("{} axes, more than {MOST_AXES}", axis_columns.len()),
-            "choose columns with --columns",
-        ));
-    }
-    let scaling = Scaling::settle(table, path, options, &axis_columns, taken.sensor)?;
-    let mut columns = axis_columns.clone();
-    let tried = watch.map(|watch| watch.covariates);
-    let (covariates, found): (Vec<_>, Vec<_>) = match tried {
-        Some(Covariates::Found) => table.columns().temperatures(&axis_columns),
-        _ => Vec::new(),
-    }
-    .into_iter()
-    .unzip();
-    let covariates = match tried {
-        Some(Covariates::Chosen(choices)) => choices,
-        _ => &covariates,
-    };
-    if covariates.len() > watched::MOST {
-        return Err(Failure::option(
-            format!("--covariates names {} columns", covariates.len()),
-            format!("name at most {}", watched::MOST),
-        ));
-    }
-    if found.is_empty() {
-        let chosen = table
-            .columns()
-            .covariates(path, covariates, &axis_columns)?;
-        columns.extend(chosen);
-    }
-    let heads = found.iter().map(|column| {
-        let head = table.columns().heads.get(column.column);
-        head.map_or(&[][..], Vec::as_slice)
-    });
-    let tried = TriedColumns::new(columns.len(), heads);
-    columns.extend(found.iter().cloned());
+    let scaling = Scaling::settle(table, path, options, &taken.axes, taken.sensor)?;
+    let wanted = watch.map(|watch| watch.covariates);
+    let (covariates, columns, tried) = with_covariates(table, path, &taken.axes, wanted)?;
     let plan = worker::Plan {
-        axes: axis_columns.len(),
+        axes: taken.axes.len(),
         first: first.unwrap_or(u64::MAX),
         watch: watch.map(|watch| worker::Watch {
             covariates: covariates.clone(),
@@ -137,22 +73,115 @@ pub(super) fn read_table(
         progress,
     };
     passes.cut(&options.cuts)?;
-    let measured = accumulate::measure(&passes, &plan)?;
+    let mut measured = accumulate::measure(&passes, &plan)?;
     let is_told = rate_hz.is_some();
-    let rate_hz = match (rate_hz, &measured.clock) {
+    let logged_hz = match (rate_hz, &measured.clock) {
         (None, Some(clock)) => clock.rate_hz().map_err(|flaw| {
             Place::file(path).failure(flaw.what, "give --rate to ignore the stamps")
         })?,
         (rate_hz, _) => rate_hz.unwrap_or(f64::NAN),
     };
-    let logged_hz = rate_hz;
     let (rate_hz, repeats) = measured.faults.sensor_rate(logged_hz);
     let mut notes = vec![said(taken.note, &scaling, time.as_ref(), rate_hz, is_told)];
     notes.retain(|note| !note.is_empty());
-    if let Some((row, rate)) = metadata.rate_of_preamble(options) {
+    if let Some((row, rate)) = table.metadata().rate_of_preamble(options) {
         notes.push(format!("{rate} Hz from row {row} above the header"));
     }
-    notes.extend(measured.clock.as_ref().map(Clock::report));
+    notes.extend(notes_of(&passes, &measured, logged_hz, repeats.clone())?);
+    notes.extend(evidence::left_out(&covariates, &measured));
+    let recorded = Recorded::new(path, &covariates, &measured, rate_hz)?;
+    let axes = taken.axes.into_iter().map(|column| column.axis);
+    let axes = axes.zip(std::mem::take(&mut measured.axes)).collect();
+    let assembly = Assembly {
+        path,
+        is_in_two: first.is_some(),
+        scaling,
+        rate_hz,
+        repeats: repeats.is_some(),
+        recorded,
+        measured,
+    };
+    assembly.log(axes, notes)
+}
+
+/// The sampling rate, if it is known before the values are read, and the column of time stamps, if it is to be read.
+fn sampling(
+    table: &impl Table,
+    path: &Path,
+    options: &Options,
+) -> Result<(Option<f64>, Option<TimeColumn>), Failure> {
+    let rate_hz = table.metadata().rate_hz(path, options)?;
+    if let Some(rate_hz) = rate_hz
+        && table.by_rows()
+    {
+        table.columns().check_rate(path, options, rate_hz)?;
+    }
+    table.columns().check_instances(path)?;
+    // If the rate is given, time stamps are read only if the options ask for them.
+    let time = match table.by_rows() && (rate_hz.is_none() || options.time.is_some()) {
+        true => table.columns().time(path, options)?,
+        false => None,
+    };
+    if rate_hz.is_none() && time.is_none() {
+        let why = match table.by_rows() {
+            true => table.columns().why_no_time(),
+            false => {
+                "the columns lie one behind the other, so that no stamps are read beside the axes"
+                    .into()
+            }
+        };
+        return Err(Place::file(path).failure(
+            format!("the sampling rate is not known: {why}"),
+            "give it with --rate HZ, or name a column of time stamps with --time",
+        ));
+    }
+    Ok((rate_hz, time))
+}
+
+/// The covariates, the columns of the axes with those of the covariates behind them, and which of these nobody asked for.
+fn with_covariates(
+    table: &impl Table,
+    path: &Path,
+    axes: &[AxisColumn],
+    wanted: Option<&Covariates>,
+) -> Result<(Vec<CovariateChoice>, Vec<AxisColumn>, TriedColumns), Failure> {
+    let (covariates, found): (Vec<_>, Vec<_>) = match wanted {
+        Some(Covariates::Found) => table.columns().temperatures(axes),
+        _ => Vec::new(),
+    }
+    .into_iter()
+    .unzip();
+    let covariates = match wanted {
+        Some(Covariates::Chosen(choices)) => choices.clone(),
+        _ => covariates,
+    };
+    if covariates.len() > watched::MOST {
+        return Err(Failure::option(
+            format!("--covariates names {} columns", covariates.len()),
+            format!("name at most {}", watched::MOST),
+        ));
+    }
+    let mut columns = axes.to_vec();
+    if found.is_empty() {
+        columns.extend(table.columns().covariates(path, &covariates, axes)?);
+    }
+    let heads = found.iter().map(|column| {
+        let head = table.columns().heads.get(column.column);
+        head.map_or(&[][..], Vec::as_slice)
+    });
+    let tried = TriedColumns::new(columns.len(), heads);
+    columns.extend(found);
+    Ok((covariates, columns, tried))
+}
+
+/// Notes on the stamps, on what was filled, on the table, on repeats and on what was left out.
+fn notes_of(
+    passes: &Passes<'_, impl Table>,
+    measured: &Measured,
+    logged_hz: f64,
+    repeats: Option<String>,
+) -> Result<Vec<String>, Failure> {
+    let mut notes: Vec<String> = measured.clock.iter().map(Clock::report).collect();
     let filled = measured
         .axes
         .first()
@@ -164,112 +193,11 @@ pub(super) fn read_table(
             plural(gaps, "short gap")
         )
     }));
-    notes.extend(table.notes());
-    notes.extend(repeats.clone());
-    let mut least = 0.0_f64;
+    notes.extend(passes.table.notes());
+    notes.extend(repeats);
     notes.extend(measured.tally.note());
     notes.extend(passes.left_out(&measured.tally, logged_hz)?);
-    notes.extend(evidence::left_out(covariates, &measured));
-    let recorded = Recorded::new(path, covariates, &measured, rate_hz)?;
-    let mut axes = Vec::new();
-    let mut rest = Vec::new();
-    let is_constant = |sums: &Sums| {
-        is_constant(sums.accumulator())
-            || matches!(sums, Sums::InTwo { rest, .. } if first.is_some() && is_constant(&rest.accumulator))
-    };
-    let units: Vec<f64> = measured
-        .axes
-        .iter()
-        .map(|(_, quantum)| scaling.scale * quantum.step())
-        .collect();
-    let are_whole = measured.axes.iter().any(|(_, quantum)| quantum.is_whole());
-    let is_gyro = scaling.unit.sensor() == Sensor::Gyro;
-    let per_degree = scaling
-        .has_scale(are_whole)
-        .then(|| 1.0 / scaling.unit.in_usual());
-    let some_change = measured.axes.iter().any(|(sums, _)| !is_constant(sums));
-    let measured_axes = axis_columns.into_iter().zip(measured.axes);
-    for (place, (column, (mut sums, quantum))) in measured_axes.enumerate() {
-        if some_change && is_constant(&sums) {
-            let name = column.axis;
-            notes.push(format!("axis {name} never changes its value: left out"));
-            continue;
-        }
-        let mut axis = Axis {
-            name: column.axis,
-            rate_per_count: scaling.scale * quantum.step(),
-            accumulator: sums.accumulator().clone(),
-            spectrum: sums.spectrum().clone(),
-            evidence: None,
-        };
-        if let (Some(_), Sums::InTwo { rest: behind, .. }) = (first, &sums) {
-            let behind = Axis {
-                accumulator: behind.accumulator.clone(),
-                spectrum: behind.spectrum.clone(),
-                ..axis.clone()
-            };
-            check_axis(path, &behind)?;
-            rest.push(behind);
-        }
-        check_axis(path, &axis)?;
-        if let Sums::Watched(watched, beside) = &mut sums {
-            let part = beside.take_part();
-            let part = part.map(|part| match (&repeats, quantum == Quantum::WHOLE) {
-                (_, false) => Err(part::refused(
-                    path,
-                    "its values are no whole numbers of 32 bits",
-                )),
-                (Some(_), _) => Err(part::refused(path, "the logger repeated samples")),
-                _ => part.finish(path, rate_hz, axis.rate_per_count),
-            });
-            let coarse = measured.coarse.get(place).copied().flatten();
-            let fault = measured.faults.verdict(place);
-            let motion = is_gyro
-                .then(|| evidence::unrest(&measured.unrest, place, rate_hz, &units, per_degree))
-                .flatten();
-            let evidence = recorded.evidence(path, &axis, &**watched, [fault, coarse, motion])?;
-            if evidence.invalid.is_none() {
-                least = least.max(measured.faults.least(place));
-            }
-            let moved_at = watched.moved_at();
-            axis.evidence = Some(Evidence {
-                disturbance: recorded.disturbance(
-                    &axis.name,
-                    evidence.invalid,
-                    moved_at,
-                    &beside.extremes,
-                ),
-                course: Some(*beside.course.clone()),
-                means: recorded.means(&measured.blocks, place, axis.rate_per_count),
-                spectrogram: beside.spectrogram(rate_hz, axis.rate_per_count),
-                pieces: part.transpose()?,
-                ..evidence
-            });
-        }
-        if quantum.is_whole() && !scaling.scale_is_told {
-            notes.push(format!(
-                "axis {}: whole numbers and no scale given: 1 per count assumed (change it with --scale)",
-                axis.name
-            ));
-        }
-        notes.extend(scaling.check(path, &axis)?);
-        axes.push(axis);
-    }
-    notes.extend(faults::bound(least));
-    spread_motion(&mut axes);
-    if scaling.origin == Origin::Assumed {
-        notes.push(format!(
-            "no unit given: {} assumed (change it with --unit)",
-            scaling.unit
-        ));
-    }
-    let log = Log {
-        rate_hz,
-        unit: scaling.unit,
-        axes,
-        notes,
-    };
-    Ok((log, rest))
+    Ok(notes)
 }
 
 /// The axes that the options ask for, or else those that are found.
@@ -281,20 +209,27 @@ fn taken(
 ) -> Result<Taken, Failure> {
     let sensor = scaling::wanted_sensor(options)?;
     let columns = table.columns();
-    match &options.columns {
+    let taken = match &options.columns {
         Some(choices) => {
             let axes = columns.chosen(path, choices)?;
-            Ok(Taken {
+            Taken {
                 sensor: columns.sensor_of(&axes),
                 axes,
                 note: None,
-            })
+            }
         }
         None => {
             let time = time.map_or(&[][..], |time| &time.columns);
-            columns.guessed(path, sensor, time)
+            columns.guessed(path, sensor, time)?
         }
+    };
+    if taken.axes.len() > MOST_AXES {
+        return Err(Place::file(path).failure(
+            format!("{} axes, more than {MOST_AXES}", taken.axes.len()),
+            "choose columns with --columns",
+        ));
     }
+    Ok(taken)
 }
 
 /// A note on what was found rather than given, on one line.
@@ -329,47 +264,4 @@ fn said(
         parts.push(format!("{rate} from the time stamps of {name}, in {unit}"));
     }
     parts.join("; ")
-}
-
-/// Whether no value of an axis differs from the one before.
-fn is_constant(accumulator: &Accumulator<OCTAVES>) -> bool {
-    let octave = accumulator.octave(0);
-    octave.is_none_or(|octave| octave.sum.to_real() == 0.0)
-}
-
-/// Checks that an axis is long enough and that its values change.
-fn check_axis(path: &Path, axis: &Axis) -> Result<(), Failure> {
-    let fail = |what: String, remedy: &str| Err(Place::file(path).failure(what, remedy));
-    let Axis {
-        name,
-        rate_per_count,
-        accumulator,
-        ..
-    } = axis;
-    // Nine samples give two octaves of at least six differences each.
-    const LEAST: u64 = 9;
-    if accumulator.samples() < LEAST {
-        return fail(
-            match accumulator.samples() {
-                1 => format!("1 sample is too few: two octaves need {LEAST}"),
-                samples => format!("{samples} samples are too few: two octaves need {LEAST}"),
-            },
-            "record longer",
-        );
-    }
-    if is_constant(accumulator) {
-        return fail(
-            format!("axis {name} never changes its value"),
-            "check the sensor, or choose other columns with --columns",
-        );
-    }
-    if !(rate_per_count.is_finite() && *rate_per_count > 0.0) {
-        return fail(
-            format!(
-                "axis {name}: a scale of {rate_per_count} per count is outside the range of floats"
-            ),
-            "give another --scale",
-        );
-    }
-    Ok(())
 }

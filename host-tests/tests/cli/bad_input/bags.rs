@@ -105,59 +105,35 @@ fn ros1_chunk(size: u32, compression: &str, packed: &[u8]) -> Vec<u8> {
     ros1(&header, packed.len() as u32, packed)
 }
 
+/// Bags, the name of each, and what is said of it.
+type Bags = Vec<(String, Vec<u8>, &'static str)>;
+
+fn named(name: &str, bags: Vec<(Vec<u8>, &'static str)>) -> Bags {
+    let bags = bags.into_iter();
+    bags.map(|(bytes, expected)| (name.to_owned(), bytes, expected))
+        .collect()
+}
+
 /// Bad bags of ROS 1.
-fn ros1_cases() -> Vec<(String, Vec<u8>, &'static str)> {
-    let mut bags: Vec<(String, Vec<u8>, &str)> = Vec::new();
-    let mut add = |bytes: Vec<u8>, expected| bags.push(("a.bag".into(), bytes, expected));
-    add(Vec::new(), "not a bag of ROS 1");
-    add(vec![7; 200], "not a bag of ROS 1");
-    add(b"#ROSBAG V2.0\n".to_vec(), "the bag ends in the middle");
-    add(ros1_bag(0, &[]), "the bag was not closed");
-    add(ros1_bag(1 << 40, &[]), "the bag was not closed");
-    add(
-        ros1_bag(13, &[]),
-        "no topic of sensor_msgs/msg/Imu: no topic at all",
-    );
-    add(
-        ros1_bag(13, &[ros1(&[("op", &[2])], 0, &[])]),
-        "a record names no connection",
-    );
-    add(
-        ros1_bag(13, &[ros1(&[("op", &[2]), ("conn", &[0; 4])], 0, &[])]),
-        "a message names no connection",
-    );
-    add(
-        ros1_bag(13, &[ros1(&[("op", &[2])], u32::MAX, &[0; 50])]),
-        "the bag ends in the middle",
-    );
-    add(
-        ros1_bag(13, &[ros1(&[("none", &[2])], 0, &[])]),
-        "a record has no kind",
-    );
-    add(
-        ros1_bag(13, &[ros1(&[("op", &[5])], 0, &[])]),
-        "a chunk has no size",
-    );
-    add(
-        ros1_bag(13, &[ros1_chunk(u32::MAX, "none", &[0; 50])]),
-        "to too many times their size",
-    );
-    add(
-        ros1_bag(13, &[ros1_chunk(50, "none", &[0xff; 50])]),
-        "a record in a chunk is too short",
-    );
-    add(
-        ros1_bag(13, &[ros1_chunk(50, "lz4", &[0xff; 50])]),
-        "a chunk cannot be unpacked",
-    );
-    add(
-        ros1_bag(13, &[ros1_chunk(50, "bz2", &[0xff; 50])]),
-        "a chunk cannot be unpacked",
-    );
-    add(
-        ros1_bag(13, &[ros1_chunk(50, "zip", &[0; 50])]),
-        "compressed with \"zip\"",
-    );
+fn ros1_cases() -> Bags {
+    let mut all: Vec<(Vec<u8>, &str)> = table! {
+        Vec::new() => "not a bag of ROS 1";
+        vec![7; 200] => "not a bag of ROS 1";
+        b"#ROSBAG V2.0\n".to_vec() => "the bag ends in the middle";
+        ros1_bag(0, &[]) => "the bag was not closed";
+        ros1_bag(1 << 40, &[]) => "the bag was not closed";
+        ros1_bag(13, &[]) => "no topic of sensor_msgs/msg/Imu: no topic at all";
+        ros1_bag(13, &[ros1(&[("op", &[2])], 0, &[])]) => "a record names no connection";
+        ros1_bag(13, &[ros1(&[("op", &[2]), ("conn", &[0; 4])], 0, &[])]) => "a message names no connection";
+        ros1_bag(13, &[ros1(&[("op", &[2])], u32::MAX, &[0; 50])]) => "the bag ends in the middle";
+        ros1_bag(13, &[ros1(&[("none", &[2])], 0, &[])]) => "a record has no kind";
+        ros1_bag(13, &[ros1(&[("op", &[5])], 0, &[])]) => "a chunk has no size";
+        ros1_bag(13, &[ros1_chunk(u32::MAX, "none", &[0; 50])]) => "to too many times their size";
+        ros1_bag(13, &[ros1_chunk(50, "none", &[0xff; 50])]) => "a record in a chunk is too short";
+        ros1_bag(13, &[ros1_chunk(50, "lz4", &[0xff; 50])]) => "a chunk cannot be unpacked";
+        ros1_bag(13, &[ros1_chunk(50, "bz2", &[0xff; 50])]) => "a chunk cannot be unpacked";
+        ros1_bag(13, &[ros1_chunk(50, "zip", &[0; 50])]) => "compressed with \"zip\"";
+    };
     let connection = |i: u32| {
         ros1(
             &[("op", &[7]), ("conn", &i.to_le_bytes()), ("topic", b"/a")],
@@ -165,16 +141,15 @@ fn ros1_cases() -> Vec<(String, Vec<u8>, &'static str)> {
             &[],
         )
     };
-    add(
-        ros1_bag(13, &(0..9000).map(connection).collect::<Vec<_>>()),
-        "too many connections",
-    );
+    let connections: Vec<_> = (0..9000).map(connection).collect();
+    all.push((ros1_bag(13, &connections), "too many connections"));
     for name in ["ros1.bag", "ros1-lz4.bag", "ros1-bz2.bag"] {
         let bytes = fixture(&format!("origins/{name}"));
         for part in [9, 100, 4117, bytes.len() / 2, bytes.len() - 9] {
-            add(bytes[..part].to_vec(), "a.bag: ");
+            all.push((bytes[..part].to_vec(), "a.bag: "));
         }
     }
+    let mut bags = named("a.bag", all);
     for name in ["ros1.bag", "ros1-lz4.bag", "ros1-bz2.bag"] {
         let good = fixture(&format!("origins/{name}"));
         for at in (30..good.len()).step_by(389) {
@@ -187,7 +162,7 @@ fn ros1_cases() -> Vec<(String, Vec<u8>, &'static str)> {
 }
 
 /// Bad bags of ROS 2 in SQLite.
-fn sqlite_cases() -> Vec<(String, Vec<u8>, &'static str)> {
+fn sqlite_cases() -> Bags {
     let good = fixture("origins/humble.db3");
     let database = |statements: &str| {
         let folder = tempfile::TempDir::new().unwrap();
@@ -200,33 +175,22 @@ fn sqlite_cases() -> Vec<(String, Vec<u8>, &'static str)> {
     let topics = "CREATE TABLE topics(id INTEGER PRIMARY KEY, name, type, serialization_format);";
     let endless = "CREATE VIEW messages AS WITH RECURSIVE n(id) AS (SELECT 1 UNION ALL SELECT id + 1 FROM n) \
                    SELECT id, 1 AS topic_id, x'00' AS data FROM n;";
-    let mut bags: Vec<(String, Vec<u8>, &str)> = vec![
-        ("a.db3".into(), Vec::new(), "without the tables of a bag"),
-        ("a.db3".into(), vec![7; 2000], "not a SQLite database"),
-        (
-            "a.db3".into(),
-            database("CREATE TABLE a(b);"),
-            "without the tables of a bag",
-        ),
-        (
-            "a.db3".into(),
-            database(&format!("{topics}{endless}")),
-            "without the tables of a bag",
-        ),
-        (
-            "a.db3".into(),
-            database(&format!("{topics}CREATE TABLE messages(a);")),
-            "damaged: ",
-        ),
-        (
-            "a.db3".into(),
-            database(&format!(
-                "{topics}CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id, data); \
-                 INSERT INTO messages VALUES(1, 2, x'00');"
-            )),
-            "a message has no topic",
-        ),
-    ];
+    let no_messages = format!("{topics}CREATE TABLE messages(a);");
+    let no_topic = format!(
+        "{topics}CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id, data); \
+         INSERT INTO messages VALUES(1, 2, x'00');"
+    );
+    let mut bags = named(
+        "a.db3",
+        table! {
+            Vec::new() => "without the tables of a bag";
+            vec![7; 2000] => "not a SQLite database";
+            database("CREATE TABLE a(b);") => "without the tables of a bag";
+            database(&format!("{topics}{endless}")) => "without the tables of a bag";
+            database(&no_messages) => "damaged: ";
+            database(&no_topic) => "a message has no topic";
+        },
+    );
     for part in [100, good.len() / 2, good.len() - 600] {
         bags.push(("a.db3".into(), good[..part].to_vec(), "a.db3: "));
     }
@@ -241,88 +205,50 @@ fn sqlite_cases() -> Vec<(String, Vec<u8>, &'static str)> {
 pub(crate) fn cases() -> Vec<Case> {
     let imu = || schema(&text("sensor_msgs/msg/Imu"));
     let ascii = b"eeee".to_vec();
-    let mut bags: Vec<(String, Vec<u8>, &str)> = Vec::new();
-    let mut add = |bytes: Vec<u8>, expected| bags.push(("a.mcap".into(), bytes, expected));
-    add(Vec::new(), "the bag ends in the middle");
-    add(b"MCAP".to_vec(), "a.mcap: ");
-    add(vec![7; 200], "not an MCAP file");
-    add(bag(&[]), "the bag ends in the middle");
-    add(bag(&[header()]), "the bag ends in the middle");
+    let mut all: Vec<(Vec<u8>, &str)> = table! {
+        Vec::new() => "the bag ends in the middle";
+        b"MCAP".to_vec() => "a.mcap: ";
+        vec![7; 200] => "not an MCAP file";
+        bag(&[]) => "the bag ends in the middle";
+        bag(&[header()]) => "the bag ends in the middle";
+    };
     for opcode in [1, 3, 4, 5, 6, 7, 15, 99] {
-        add(
-            bag(&[header(), long(opcode, 1 << 28, &[0; 100])]),
-            "a.mcap: ",
-        );
-        add(
-            bag(&[header(), long(opcode, u64::MAX, &[0; 100])]),
-            "a.mcap: ",
-        );
+        for length in [1 << 28, u64::MAX] {
+            all.push((
+                bag(&[header(), long(opcode, length, &[0; 100])]),
+                "a.mcap: ",
+            ));
+        }
     }
-    add(
-        bag(&[header(), schema(&ascii)]),
-        "damaged: a record is too short",
-    );
-    add(
-        bag(&[header(), imu(), channel(&ascii)]),
-        "damaged: a record is too short",
-    );
-    add(
-        bag(&[header(), record(3, &[1])]),
-        "damaged: a record is too short",
-    );
-    add(
-        bag(&[header(), record(4, &[1])]),
-        "damaged: a record is too short",
-    );
-    add(
-        bag(&[header(), record(5, &[1])]),
-        "damaged: a record is too short",
-    );
-    add(
-        bag(&[header(), record(11, &[1])]),
-        "damaged: a record is too short",
-    );
-    add(bag(&[header(), message(9, &[])]), "damaged: ");
-    add(
-        bag(&[
-            header(),
-            imu(),
-            channel(&text("/imu")),
-            message(1, &[0, 1, 0, 0]),
-        ]),
-        "the bag ends in the middle",
-    );
-    add(
-        bag(&[header(), chunk(1 << 60, "zstd", &zeros(1))]),
-        "a.mcap: ",
-    );
-    add(
-        bag(&[header(), chunk(1 << 27, "zstd", &zeros(1))]),
-        "a.mcap: ",
-    );
-    add(
-        bag(&[header(), chunk(1 << 17, "brotli", &zeros(1))]),
-        "compressed with \"brotli\"",
-    );
-    // Half a megabyte unpacks to seventeen gigabytes of empty records.
-    add(
-        bag(&[header(), chunk(1 << 34, "zstd", &zeros(1 << 17))]),
-        "a.mcap: ",
-    );
+    all.extend(table! {
+        bag(&[header(), schema(&ascii)]) => "damaged: a record is too short";
+        bag(&[header(), imu(), channel(&ascii)]) => "damaged: a record is too short";
+        bag(&[header(), record(3, &[1])]) => "damaged: a record is too short";
+        bag(&[header(), record(4, &[1])]) => "damaged: a record is too short";
+        bag(&[header(), record(5, &[1])]) => "damaged: a record is too short";
+        bag(&[header(), record(11, &[1])]) => "damaged: a record is too short";
+        bag(&[header(), message(9, &[])]) => "damaged: ";
+        bag(&[header(), imu(), channel(&text("/imu")), message(1, &[0, 1, 0, 0])]) => "the bag ends in the middle";
+        bag(&[header(), chunk(1 << 60, "zstd", &zeros(1))]) => "a.mcap: ";
+        bag(&[header(), chunk(1 << 27, "zstd", &zeros(1))]) => "a.mcap: ";
+        bag(&[header(), chunk(1 << 17, "brotli", &zeros(1))]) => "compressed with \"brotli\"";
+        // Half a megabyte unpacks to seventeen gigabytes of empty records.
+        bag(&[header(), chunk(1 << 34, "zstd", &zeros(1 << 17))]) => "a.mcap: ";
+    });
     let pieces: Vec<Vec<u8>> = (0..800)
         .map(|_| chunk(36 << 17, "zstd", &zeros(36)))
         .collect();
-    add(
-        bag(&[header(), pieces.concat()]),
-        "damaged: the chunks unpack to too many times their size",
-    );
-    add(bag(&[header(), chunk(100, "lz4", &[0xff; 64])]), "a.mcap: ");
+    all.extend(table! {
+        bag(&[header(), pieces.concat()]) => "damaged: the chunks unpack to too many times their size";
+        bag(&[header(), chunk(100, "lz4", &[0xff; 64])]) => "a.mcap: ";
+    });
     for name in ["imu-zstd.mcap", "imu-lz4.mcap", "imu-plain.mcap"] {
         let bytes = fixture(name);
         for part in [9, 100, bytes.len() / 2, bytes.len() - 9] {
-            add(bytes[..part].to_vec(), "a.mcap: ");
+            all.push((bytes[..part].to_vec(), "a.mcap: "));
         }
     }
+    let mut bags = named("a.mcap", all);
     // The flips lie in the chunk of the packed bag, which a checksum covers.
     let packed = fixture("imu-zstd.mcap");
     for at in (60..packed.len() / 2).step_by(97) {

@@ -1,6 +1,8 @@
 //! A bad input: files, a command, and what must come of it.
 
 use std::{
+    collections::BTreeSet,
+    ffi::OsString,
     fs,
     io::{Read, Write},
     path::Path,
@@ -105,6 +107,7 @@ impl Case {
             let shell = shell.args(["-c", &self.prepare]).current_dir(folder);
             assert!(shell.status().unwrap().success(), "{}", self.prepare);
         }
+        let before = names_in(folder);
         let arguments: Vec<&str> = self.arguments.iter().map(String::as_str).collect();
         let ended = limited(folder, &arguments, &self.input, needed_kib + SPARE_KIB);
         let wrong = |what: &str| {
@@ -120,12 +123,20 @@ impl Case {
             _ if !ended.errors.contains(&self.expected) => wrong("another message"),
             _ if self.status == 2 && !is_one_line(&ended.errors) => wrong("not one clear line"),
             _ if self.status == 2 && !self.names_place(&ended.errors) => wrong("no place"),
+            _ if self.status == 2 && names_in(folder) != before => wrong("another file"),
+            _ if !self.files_are_in(folder) => wrong("a changed input"),
             _ => Ok(ended.usage),
         }
     }
 }
 
 impl Case {
+    /// Whether the files of the case are as they were.
+    fn files_are_in(&self, folder: &Path) -> bool {
+        let mut files = self.files.iter();
+        files.all(|(name, bytes)| fs::read(folder.join(name)).is_ok_and(|found| found == *bytes))
+    }
+
     /// Whether the last line names an option, the standard input, or one of the arguments: a file with its place in it,
     /// or a value.
     fn names_place(&self, errors: &str) -> bool {
@@ -136,6 +147,12 @@ impl Case {
             .any(|place| last.contains(place));
         is_told || words.any(|word| last.contains(word.as_str()))
     }
+}
+
+/// The names of what is in a folder.
+fn names_in(folder: &Path) -> BTreeSet<OsString> {
+    let entries = fs::read_dir(folder).unwrap();
+    entries.map(|entry| entry.unwrap().file_name()).collect()
 }
 
 /// The last line tells what is wrong, and what to do about it behind a semicolon. Notes may stand before it.

@@ -60,76 +60,23 @@ fn mcaps() -> Vec<(Vec<u8>, &'static str)> {
     let longest = "S".repeat(4000);
     let long = "float64 x\n".repeat(20_000);
     let definitions = |id: u16| schema(id, "a/msg/B", &long[..usize::from(id % 400) * 10]);
-    vec![
+    table! {
         // As many schemas as there are identifiers, each with other text.
-        (
-            bag(&[
-                header(),
-                packed(&many(&|id| schema(id, "", &format!("{id:0>120}")))),
-            ]),
-            "a.mcap: ",
-        ),
-        (
-            bag(&[
-                header(),
-                packed(&(0..4000).flat_map(definitions).collect::<Vec<u8>>()),
-            ]),
-            "a.mcap: ",
-        ),
-        (
-            bag(&[header(), packed(&schema(1, &longest.repeat(1000), ""))]),
-            "damaged: the names of its channels are too long or too many",
-        ),
-        (
-            bag(&[
-                header(),
-                packed(
-                    &(0..4000)
-                        .flat_map(|id| channel(id, 1, &format!("{longest}{id}")))
-                        .collect::<Vec<u8>>(),
-                ),
-            ]),
-            "damaged: the names of its channels are too long or too many",
-        ),
-        (
-            bag(&[
-                header(),
-                packed(
-                    &[
-                        schema(1, "a/msg/B", &long),
-                        many(&|id| channel(id, 1, &format!("{id}"))),
-                    ]
-                    .concat(),
-                ),
-            ]),
-            "a.mcap: ",
-        ),
-        (defined(&nested("TYPE x\n", 30, "float64 gyr")), "a.mcap: "),
-        (
-            defined(&nested("TYPE[16] x\n", 1, "string gyr")),
-            "a.mcap: ",
-        ),
-        (
-            defined(&nested("TYPE[16] gyr\n", 1, "float64 gyr")),
-            "a.mcap: ",
-        ),
-        (
-            defined(&nested("TYPE[4000000000] gyr\n", 1, "float64 gyr")),
-            "a.mcap: ",
-        ),
-        (
-            defined(&format!("float64 {}", "gyr".repeat(60_000))),
-            "a.mcap: ",
-        ),
-        (
-            defined(
-                &(0..20_000)
-                    .map(|i| format!("a/T{i} x\n===\nMSG: a/T{i}\n"))
-                    .collect::<String>(),
-            ),
-            "a.mcap: ",
-        ),
-    ]
+        bag(&[header(), packed(&many(&|id| schema(id, "", &format!("{id:0>120}"))))]) => "a.mcap: ";
+        bag(&[header(), packed(&(0..4000).flat_map(definitions).collect::<Vec<u8>>())]) => "a.mcap: ";
+        bag(&[header(), packed(&schema(1, &longest.repeat(1000), ""))])
+            => "damaged: the names of its channels are too long or too many";
+        bag(&[header(), packed(&(0..4000).flat_map(|id| channel(id, 1, &format!("{longest}{id}"))).collect::<Vec<u8>>())])
+            => "damaged: the names of its channels are too long or too many";
+        bag(&[header(), packed(&[schema(1, "a/msg/B", &long), many(&|id| channel(id, 1, &format!("{id}")))].concat())])
+            => "a.mcap: ";
+        defined(&nested("TYPE x\n", 30, "float64 gyr")) => "a.mcap: ";
+        defined(&nested("TYPE[16] x\n", 1, "string gyr")) => "a.mcap: ";
+        defined(&nested("TYPE[16] gyr\n", 1, "float64 gyr")) => "a.mcap: ";
+        defined(&nested("TYPE[4000000000] gyr\n", 1, "float64 gyr")) => "a.mcap: ";
+        defined(&format!("float64 {}", "gyr".repeat(60_000))) => "a.mcap: ";
+        defined(&(0..20_000).map(|i| format!("a/T{i} x\n===\nMSG: a/T{i}\n")).collect::<String>()) => "a.mcap: ";
+    }
 }
 
 /// A database with these statements behind those of a table of topics and one of messages.
@@ -156,77 +103,23 @@ fn databases() -> Vec<(Vec<u8>, &'static str)> {
     };
     let name = "id INTEGER PRIMARY KEY, type, serialization_format, name AS (hex(zeroblob(32000)))";
     let no_tables = "a SQLite database without the tables of a bag";
-    vec![
-        (
-            database(name, MESSAGES, &rows("topics(id) SELECT i", 4000)),
-            no_tables,
-        ),
-        (
-            database(
-                TOPICS,
-                "id INTEGER PRIMARY KEY, topic_id, data AS (zeroblob(1000000))",
-                &rows("messages(topic_id) SELECT 1", 4000),
-            ),
-            no_tables,
-        ),
-        (
-            database(
-                TOPICS,
-                "id INTEGER PRIMARY KEY, topic_id, data AS (zeroblob(1000)) STORED",
-                imu,
-            ),
-            no_tables,
-        ),
+    table! {
+        database(name, MESSAGES, &rows("topics(id) SELECT i", 4000)) => no_tables;
+        database(TOPICS, "id INTEGER PRIMARY KEY, topic_id, data AS (zeroblob(1000000))", &rows("messages(topic_id) SELECT 1", 4000))
+            => no_tables;
+        database(TOPICS, "id INTEGER PRIMARY KEY, topic_id, data AS (zeroblob(1000)) STORED", imu) => no_tables;
         // Messages that would have to be sorted before the first one is seen.
-        (
-            database(
-                TOPICS,
-                "id, topic_id, data",
-                &format!(
-                    "{imu}{}",
-                    rows("messages SELECT -i, 1, zeroblob(300)", 2000)
-                ),
-            ),
-            no_tables,
-        ),
-        (
-            database(
-                TOPICS,
-                MESSAGES,
-                &rows("topics SELECT i, hex(zeroblob(2000)) || i, 'a', 'b'", 200),
-            ),
-            "no topic of sensor_msgs/msg/Imu: only ",
-        ),
-        (
-            database(
-                TOPICS,
-                MESSAGES,
-                "INSERT INTO topics VALUES(1, hex(zeroblob(400000)), 'a', 'b');",
-            ),
-            "damaged: the names of its channels are too long or too many",
-        ),
-        (
-            database(
-                TOPICS,
-                MESSAGES,
-                &rows("topics SELECT i, i, 'a', 'b'", 9000),
-            ),
-            "damaged: the bag has too many topics",
-        ),
+        database(TOPICS, "id, topic_id, data", &format!("{imu}{}", rows("messages SELECT -i, 1, zeroblob(300)", 2000)))
+            => no_tables;
+        database(TOPICS, MESSAGES, &rows("topics SELECT i, hex(zeroblob(2000)) || i, 'a', 'b'", 200))
+            => "no topic of sensor_msgs/msg/Imu: only ";
+        database(TOPICS, MESSAGES, "INSERT INTO topics VALUES(1, hex(zeroblob(400000)), 'a', 'b');")
+            => "damaged: the names of its channels are too long or too many";
+        database(TOPICS, MESSAGES, &rows("topics SELECT i, i, 'a', 'b'", 9000)) => "damaged: the bag has too many topics";
         // Thirty thousand rows of one byte, and the table's statement has a default of a megabyte for their data.
-        (
-            database(
-                TOPICS,
-                "id INTEGER PRIMARY KEY, topic_id",
-                &format!(
-                    "{imu}{}ALTER TABLE messages ADD COLUMN data DEFAULT x'{}';",
-                    rows("messages SELECT i, 1", 30_000),
-                    "00".repeat(200_000)
-                ),
-            ),
-            "damaged: the chunks unpack to too many times their size",
-        ),
-    ]
+        database(TOPICS, "id INTEGER PRIMARY KEY, topic_id", &format!("{imu}{}ALTER TABLE messages ADD COLUMN data DEFAULT x'{}';", rows("messages SELECT i, 1", 30_000), "00".repeat(200_000)))
+            => "damaged: the chunks unpack to too many times their size";
+    }
 }
 
 fn ros1_bags() -> Vec<(Vec<u8>, &'static str)> {
@@ -241,16 +134,10 @@ fn ros1_bags() -> Vec<(Vec<u8>, &'static str)> {
     let long: Vec<Vec<u8>> = (0..250)
         .map(|id| connection(id, &format!("{id}{}", "t".repeat(4000))))
         .collect();
-    vec![
-        (
-            ros1_bag(13, &long),
-            "no topic of sensor_msgs/msg/Imu: only ",
-        ),
-        (
-            ros1_bag(13, &[connection(1, &"t".repeat(9000))]),
-            "damaged: the names of its channels are too long or too many",
-        ),
-    ]
+    table! {
+        ros1_bag(13, &long) => "no topic of sensor_msgs/msg/Imu: only ";
+        ros1_bag(13, &[connection(1, &"t".repeat(9000))]) => "damaged: the names of its channels are too long or too many";
+    }
 }
 
 pub(super) fn cases() -> Vec<Case> {

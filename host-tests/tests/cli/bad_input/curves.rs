@@ -25,83 +25,44 @@ pub(crate) fn cases() -> Vec<Case> {
         changed.to_string()
     };
     let follows = "does not follow from the sum";
-    let texts: Vec<(String, &str)> = vec![
-        (String::new(), "not a curve file"),
-        ("{}".into(), "missing field `format`"),
-        ("[".repeat(100_000), "not a curve file"),
-        ("[1, 2]".into(), "not a curve file"),
-        (text[..text.len() / 2].into(), "not a curve file: EOF"),
-        (format!("{text}{text}"), "trailing characters"),
-        (text.replacen("100.0", "NaN", 1), "not a curve file"),
-        (text.replacen("100.0", "1e999", 1), "number out of range"),
-        (with("/format", json!("other")), "the format is \"other\""),
-        (with("/format", json!("\u{1b}[2J")), "the format is"),
-        (with("/version", json!(99)), "the format has version 99"),
-        (with("/axes", json!([])), "the file has no axes"),
-        (with("/axes/0/axis", json!("")), "axis 1 has no name"),
-        (
-            with("/axes/0/axis", json!("x".repeat(5000))),
-            "axis 1: the name",
-        ),
-        (
-            with("/axes/1/axis", good["axes"][0]["axis"].clone()),
-            "two axes are named",
-        ),
-        (
-            with("/axes/0/rate_hz", json!(0.0)),
-            "rate_hz 0 is impossible",
-        ),
-        (
-            with("/axes/0/rate_hz", json!(-1.0)),
-            "rate_hz -1 is impossible",
-        ),
-        (
-            with("/axes/0/rate_hz", json!(1e300)),
-            "rate_hz 1.000e300 is impossible",
-        ),
-        (with("/axes/0/rate_hz", json!(50.0)), "is not m / rate_hz"),
-        (with("/axes/0/rate_per_count", json!(1e300)), follows),
-        (with("/axes/0/rate_per_count", json!(1e-300)), follows),
-        (
-            with("/axes/0/rate_per_count", json!(0.0)),
-            "rate_per_count 0 is impossible",
-        ),
-        (with("/axes/0/unit", json!("furlong/s")), "unknown variant"),
-        (
-            with("/axes/0/samples", json!(u64::MAX)),
-            "samples are impossible",
-        ),
-        (with("/axes/0/samples", json!(7)), "samples are impossible"),
-        (
-            with("/axes/0/gaps", json!(u64::MAX)),
-            "samples are impossible",
-        ),
-        (
-            with("/axes/0/octaves", json!([])),
-            "a fit needs two octaves",
-        ),
-        (
-            with("/axes/0/octaves/1/m", json!(3)),
-            "is not a power of two",
-        ),
-        (
-            with("/axes/0/octaves/1/m", json!(0)),
-            "averaging factors must ascend",
-        ),
-        (
-            with("/axes/0/octaves/1/differences", json!(5)),
-            "are impossible",
-        ),
-        (with("/axes/0/octaves/1/sum", json!(0)), follows),
-        (with("/axes/0/octaves/1/variance", json!(-1.0)), follows),
-        (with("/axes/0/octaves/1/variance", json!(1e308)), follows),
-        (
-            with("/axes/0/octaves/1/tau_s", json!(1e308)),
-            "is not m / rate_hz",
-        ),
-        (axes(65), "the file has 65 axes, more than 64"),
-        (axes(400), "the file has 400 axes, more than 64"),
-    ];
+    let texts: Vec<(String, &str)> = table! {
+        String::new() => "not a curve file";
+        "{}".into() => "missing field `format`";
+        "[".repeat(100_000) => "not a curve file";
+        "[1, 2]".into() => "not a curve file";
+        text[..text.len() / 2].into() => "not a curve file: EOF";
+        format!("{text}{text}") => "trailing characters";
+        text.replacen("100.0", "NaN", 1) => "not a curve file";
+        text.replacen("100.0", "1e999", 1) => "number out of range";
+        with("/format", json!("other")) => "the format is \"other\"";
+        with("/format", json!("\u{1b}[2J")) => "the format is";
+        with("/version", json!(99)) => "a.json: the format has version 99, but this program reads versions 1 to 5; ";
+        with("/axes", json!([])) => "the file has no axes";
+        with("/axes/0/axis", json!("")) => "axis 1 has no name";
+        with("/axes/0/axis", json!("x".repeat(5000))) => "axis 1: the name";
+        with("/axes/1/axis", good["axes"][0]["axis"].clone()) => "two axes are named";
+        with("/axes/0/rate_hz", json!(0.0)) => "rate_hz 0 is impossible";
+        with("/axes/0/rate_hz", json!(-1.0)) => "rate_hz -1 is impossible";
+        with("/axes/0/rate_hz", json!(1e300)) => "rate_hz 1.000e300 is impossible";
+        with("/axes/0/rate_hz", json!(50.0)) => "is not m / rate_hz";
+        with("/axes/0/rate_per_count", json!(1e300)) => follows;
+        with("/axes/0/rate_per_count", json!(1e-300)) => follows;
+        with("/axes/0/rate_per_count", json!(0.0)) => "rate_per_count 0 is impossible";
+        with("/axes/0/unit", json!("furlong/s")) => "unknown variant";
+        with("/axes/0/samples", json!(u64::MAX)) => "samples are impossible";
+        with("/axes/0/samples", json!(7)) => "samples are impossible";
+        with("/axes/0/gaps", json!(u64::MAX)) => "samples are impossible";
+        with("/axes/0/octaves", json!([])) => "a fit needs two octaves";
+        with("/axes/0/octaves/1/m", json!(3)) => "a.json: axis \"gx\": octave m = 3: the averaging factor is not a power of two";
+        with("/axes/0/octaves/1/m", json!(0)) => "averaging factors must ascend";
+        with("/axes/0/octaves/1/differences", json!(5)) => "are impossible";
+        with("/axes/0/octaves/1/sum", json!(0)) => follows;
+        with("/axes/0/octaves/1/variance", json!(-1.0)) => follows;
+        with("/axes/0/octaves/1/variance", json!(1e308)) => follows;
+        with("/axes/0/octaves/1/tau_s", json!(1e308)) => "is not m / rate_hz";
+        axes(65) => "the file has 65 axes, more than 64";
+        axes(400) => "the file has 400 axes, more than 64";
+    };
     let case = |(text, expected): (String, &str)| refused("a.json", text, "fit a.json", expected);
     let mut cases: Vec<Case> = texts.into_iter().map(case).collect();
     cases.extend(spectra(&good));
@@ -133,7 +94,7 @@ pub(crate) fn cases() -> Vec<Case> {
             "a.json",
             text.as_str(),
             "fit a.json --rate 5",
-            "contains its rate",
+            "a.json: a curve file contains its rate",
         ),
         refused(
             "a.json",
@@ -171,69 +132,36 @@ fn spectra(good: &Value) -> Vec<Case> {
     let octaves = short["axes"][0]["octaves"].as_array_mut().unwrap();
     octaves.truncate(3);
     let no_number = "not a curve file";
-    let texts = [
-        (with("levels/0/density", numbers(27)).to_string(), of_bins),
-        (
-            with("levels/0/density", numbers(1_000_000)).to_string(),
-            of_bins,
-        ),
-        (with("levels/0/kurtosis", numbers(0)).to_string(), of_bins),
-        (with("levels/0/kurtosis", numbers(29)).to_string(), of_bins),
-        (
-            with("levels/0/density/3", json!(-1.0)).to_string(),
-            "spectrum: ",
-        ),
-        (
-            with("levels/0/density/3", json!(null)).to_string(),
-            no_number,
-        ),
-        (written("levels/0/density/3", "NaN"), no_number),
-        (written("levels/0/density/3", "Infinity"), no_number),
-        (
-            written("levels/0/density/3", "1e999"),
-            "number out of range",
-        ),
-        (
-            with("levels/0/density/3", json!(1e300)).to_string(),
-            "the densities contradict the octaves",
-        ),
-        (
-            with("levels/0/kurtosis/3", json!(-0.5)).to_string(),
-            "spectrum: ",
-        ),
-        (written("levels/0/kurtosis/3", "NaN"), no_number),
-        (
-            with("levels/0/kurtosis/3", json!(1e9)).to_string(),
-            "a spectral kurtosis is impossible",
-        ),
-        (with("levels/0/segments", json!(0)).to_string(), few),
-        (with("levels/0/segments", json!(-1)).to_string(), no_number),
-        (
-            with("levels/0/segments", json!(u64::MAX)).to_string(),
-            no_number,
-        ),
-        (
-            with("levels/0/segments", json!(u32::MAX)).to_string(),
-            "more segments than samples",
-        ),
-        (with("levels/0/block", json!(0)).to_string(), blocks),
-        (with("levels/1/block", json!(3)).to_string(), blocks),
-        (with("levels/1/block", json!(64)).to_string(), blocks),
-        (levels(&|all| all.swap(0, 1)), blocks),
-        (levels(&|all| drop(all.remove(0))), blocks),
-        (
-            levels(&|all| all.extend(vec![all[3].clone(); 1000])),
-            blocks,
-        ),
-        (with("segment", json!(0)).to_string(), of_bins),
-        (with("segment", json!(63)).to_string(), "spectrum"),
-        (with("segment", json!(128)).to_string(), of_bins),
-        (with("segment", json!(u32::MAX)).to_string(), of_bins),
-        (
-            short.to_string(),
-            "spectrum, block 8: there is no octave of this length",
-        ),
-    ];
+    let texts = table! {
+        with("levels/0/density", numbers(27)).to_string() => of_bins;
+        with("levels/0/density", numbers(1_000_000)).to_string() => of_bins;
+        with("levels/0/kurtosis", numbers(0)).to_string() => of_bins;
+        with("levels/0/kurtosis", numbers(29)).to_string() => of_bins;
+        with("levels/0/density/3", json!(-1.0)).to_string() => "spectrum: ";
+        with("levels/0/density/3", json!(null)).to_string() => no_number;
+        written("levels/0/density/3", "NaN") => no_number;
+        written("levels/0/density/3", "Infinity") => no_number;
+        written("levels/0/density/3", "1e999") => "number out of range";
+        with("levels/0/density/3", json!(1e300)).to_string() => "the densities contradict the octaves";
+        with("levels/0/kurtosis/3", json!(-0.5)).to_string() => "spectrum: ";
+        written("levels/0/kurtosis/3", "NaN") => no_number;
+        with("levels/0/kurtosis/3", json!(1e9)).to_string() => "a spectral kurtosis is impossible";
+        with("levels/0/segments", json!(0)).to_string() => few;
+        with("levels/0/segments", json!(-1)).to_string() => no_number;
+        with("levels/0/segments", json!(u64::MAX)).to_string() => no_number;
+        with("levels/0/segments", json!(u32::MAX)).to_string() => "more segments than samples";
+        with("levels/0/block", json!(0)).to_string() => blocks;
+        with("levels/1/block", json!(3)).to_string() => blocks;
+        with("levels/1/block", json!(64)).to_string() => blocks;
+        levels(&|all| all.swap(0, 1)) => blocks;
+        levels(&|all| drop(all.remove(0))) => blocks;
+        levels(&|all| all.extend(vec![all[3].clone(); 1000])) => blocks;
+        with("segment", json!(0)).to_string() => of_bins;
+        with("segment", json!(63)).to_string() => "spectrum";
+        with("segment", json!(128)).to_string() => of_bins;
+        with("segment", json!(u32::MAX)).to_string() => of_bins;
+        short.to_string() => "spectrum, block 8: there is no octave of this length";
+    };
     let case =
         |(text, expected): (String, &str)| refused("a.json", text, "diagnose a.json", expected);
     let mut cases: Vec<Case> = texts.into_iter().map(case).collect();

@@ -1,6 +1,13 @@
 //! Bad inputs of every kind end with an exit status and a line that says what is wrong, in little time and
 //! memory.
 
+/// A table of bad inputs: each, and what is said of it.
+macro_rules! table {
+    ($($given:expr => $expected:expr;)*) => {
+        vec![$(($given, $expected)),*]
+    };
+}
+
 mod arrays;
 mod bags;
 mod case;
@@ -22,11 +29,7 @@ use std::sync::{
 };
 use std::thread;
 use tempfile::TempDir;
-
-/// A good log of three axes.
-pub(crate) fn good_text(rows: usize) -> String {
-    text::good(rows)
-}
+pub(crate) use text::good as good_text;
 
 /// Two programs run at a time.
 const AT_ONCE: usize = 2;

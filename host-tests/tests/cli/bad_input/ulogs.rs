@@ -46,84 +46,35 @@ pub(crate) fn cases() -> Vec<Case> {
         .chain([format("n8:float x;"), subscription(0, "n0"), data(0)])
         .collect();
     let newer = message(b'B', &[&[0; 8][..], &[2; 8], &[0; 24]].concat());
-    let logs: Vec<(Vec<u8>, &str)> = vec![
-        (Vec::new(), "the file ends within its header"),
-        (b"ULog".to_vec(), "the file ends within its header"),
-        (vec![7; 200], "this is not a ULog file"),
-        (log(&[]), "there are no messages at all"),
-        (log(&[newer]), "the log needs a newer version of ULog"),
-        (
-            log(&[message(b'B', &[0; 3])]),
-            "the message of flags is too short",
-        ),
-        (log(&[format("no colon")]), "a format has no name"),
-        (log(&[format("f:float[x] y;")]), "a field is malformed"),
-        (log(&[format("f:float")]), "a field is malformed"),
-        (log(&[message(b'A', &[1])]), "a subscription names no topic"),
-        (
-            log(&[subscription(0, &"x".repeat(300))]),
-            "a topic of more than 256 bytes",
-        ),
-        (
-            log(&[format(&format!("f:float {};", "x".repeat(300)))]),
-            "more than 256 bytes",
-        ),
-        (log(&[message(b'D', &[1])]), "no subscription number"),
-        (
-            log(&[subscription(0, "sensor_gyro"), data(0)]),
-            "is not defined",
-        ),
-        (
-            log(&[format(gyro), subscription(0, "sensor_gyro")]),
-            "there are no messages at all",
-        ),
-        (
-            log(&[format("other:float x;"), subscription(0, "other"), data(0)]),
-            "there are other:0",
-        ),
-        (
-            log(&[
-                format("a\u{1b}[2J:float x;"),
-                subscription(0, "a\u{1b}[2J"),
-                data(0),
-            ]),
-            "there are a",
-        ),
-        (
-            log(&[
-                format("sensor_gyro:empty[4294967295] x;"),
-                format("empty:"),
-                subscription(0, "sensor_gyro"),
-                data(0),
-            ]),
-            "format sensor_gyro is too long",
-        ),
-        (
-            log(&[
-                format("sensor_gyro:sensor_gyro x;"),
-                subscription(0, "sensor_gyro"),
-                data(0),
-            ]),
-            "format sensor_gyro is too long",
-        ),
-        (log(&many), "no topic of"),
-        (log(&raw), "a.ulg: "),
-        (log(&declared), "the formats have more than 65536 fields"),
-        (log(&nested), "no topic of"),
-        (
-            log(&[
-                format(gyro),
-                subscription(0, "sensor_gyro"),
-                data(0),
-                data(0),
-            ]),
-            "a.ulg: ",
-        ),
-        (
-            log(&[format(gyro), vec![0xff, 0xff, b'D', 0, 0]]),
-            "ends before its first data message",
-        ),
-    ];
+    let logs: Vec<(Vec<u8>, &str)> = table! {
+        Vec::new() => "the file ends within its header";
+        b"ULog".to_vec() => "the file ends within its header";
+        vec![7; 200] => "this is not a ULog file";
+        log(&[]) => "there are no messages at all";
+        log(&[newer]) => "the log needs a newer version of ULog";
+        log(&[message(b'B', &[0; 3])]) => "the message of flags is too short";
+        log(&[format("no colon")]) => "a format has no name";
+        log(&[format("f:float[x] y;")]) => "a field is malformed";
+        log(&[format("f:float")]) => "a field is malformed";
+        log(&[message(b'A', &[1])]) => "a subscription names no topic";
+        log(&[subscription(0, &"x".repeat(300))]) => "a topic of more than 256 bytes";
+        log(&[format(&format!("f:float {};", "x".repeat(300)))]) => "more than 256 bytes";
+        log(&[message(b'D', &[1])]) => "no subscription number";
+        log(&[subscription(0, "sensor_gyro"), data(0)]) => "is not defined";
+        log(&[format(gyro), subscription(0, "sensor_gyro")]) => "there are no messages at all";
+        log(&[format("other:float x;"), subscription(0, "other"), data(0)]) => "there are other:0";
+        log(&[format("a\u{1b}[2J:float x;"), subscription(0, "a\u{1b}[2J"), data(0)]) => "there are a";
+        log(&[format("sensor_gyro:empty[4294967295] x;"), format("empty:"), subscription(0, "sensor_gyro"), data(0)])
+            => "format sensor_gyro is too long";
+        log(&[format("sensor_gyro:sensor_gyro x;"), subscription(0, "sensor_gyro"), data(0)])
+            => "format sensor_gyro is too long";
+        log(&many) => "no topic of";
+        log(&raw) => "a.ulg: ";
+        log(&declared) => "the formats have more than 65536 fields";
+        log(&nested) => "no topic of";
+        log(&[format(gyro), subscription(0, "sensor_gyro"), data(0), data(0)]) => "a.ulg: ";
+        log(&[format(gyro), vec![0xff, 0xff, b'D', 0, 0]]) => "ends before its first data message";
+    };
     let case = |(bytes, expected)| refused("a.ulg", bytes, "fit a.ulg", expected);
     let mut cases: Vec<Case> = logs.into_iter().map(case).collect();
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/fixtures");

@@ -1,7 +1,6 @@
 //! Checks what users and scripts see of the program: results, exit statuses, and one line for each
 //! error.
 
-mod bad_input;
 mod fitting;
 #[cfg(unix)]
 mod outputs;

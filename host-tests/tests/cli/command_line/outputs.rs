@@ -50,29 +50,6 @@ fn devices_pipes_and_links_are_written_through() {
 }
 
 #[test]
-fn input_is_never_replaced() {
-    let folder = folder();
-    let path = folder.path();
-    let before = fs::read(path.join("log.csv")).unwrap();
-    symlink("log.csv", path.join("link.svg")).unwrap();
-    fs::hard_link(path.join("log.csv"), path.join("same.html")).unwrap();
-    for arguments in [
-        &["export", "--format", "csv", "log.csv", "-o", "log.csv"][..],
-        &["plot", "log.csv", "-o", "link.svg"],
-        &["report", "log.csv", "-o", "same.html"],
-    ] {
-        let line = refusal(path, arguments);
-        assert!(
-            line.ends_with(
-                "the output is also the input, which would be lost; name another output"
-            ),
-            "{line}"
-        );
-        assert_eq!(fs::read(path.join("log.csv")).unwrap(), before);
-    }
-}
-
-#[test]
 fn temporary_files_vanish_on_an_interruption() {
     for signal in ["INT", "TERM"] {
         let folder = folder();
@@ -126,4 +103,29 @@ fn standard_error_that_is_closed_or_full_changes_nothing() {
         assert_eq!(ended.status.code(), Some(2), "{errors}");
         assert!(!ended.stdout.is_empty());
     }
+}
+
+#[test]
+fn failure_leaves_an_earlier_output_unchanged() {
+    let folder = folder();
+    let path = folder.path();
+    let before = fs::read(path.join("curve.json")).unwrap();
+    fs::write(path.join("bad.csv"), "# rate_hz=1\ngx\n1\n2\nx\n").unwrap();
+    refusal(path, &["measure", "bad.csv", "--output", "curve.json"]);
+    assert_eq!(before, fs::read(path.join("curve.json")).unwrap());
+    assert_eq!(
+        fs::read_dir(path).unwrap().count(),
+        3,
+        "no temporary file remains"
+    );
+    let line = refusal(path, &["measure", "log.csv", "--output", "log.csv"]);
+    assert_eq!(
+        line,
+        "log.csv: a curve file must end in .json; rename the output"
+    );
+    let line = refusal(path, &["measure", "log.csv", "--output", "none/curve.json"]);
+    assert_eq!(
+        line,
+        "none/curve.json: its folder does not exist; create the folder first"
+    );
 }

@@ -92,8 +92,9 @@ fn likest(shown: &[&str], printed: &[&str]) -> Option<usize> {
 /// Replaces the lines that a page shows, and that are not printed, by those most like them.
 fn update(page: &mut String, shown: &[&str], printed: &[&str]) {
     let mut rest = printed;
-    for part in shown.split(|line| *line == "...") {
-        let Some(at) = likest(part, rest).filter(|_| !part.is_empty()) else {
+    let parts = shown.split(|line| *line == "...");
+    for part in parts.filter(|part| !part.is_empty()) {
+        let Some(at) = likest(part, rest) else {
             continue;
         };
         let (now, behind) = rest[at..].split_at(part.len());

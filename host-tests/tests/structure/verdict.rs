@@ -82,28 +82,36 @@ fn documents_list_the_names_of_all_verdicts() {
     );
 }
 
+/// A catalogue of other words than that of the project.
+fn invented() -> Catalogue {
+    let of = |text: &str| syn::parse_file(text).expect("a file").items;
+    let sentences = "const ADEQUATE: &str = \"sound\"; const INADEQUATE: &str = \"not sound\";
+        const NOT_STATIONARY: &str = \"unsteady\"; const MODEL: &str = \"a sound model\";
+        fn of(terms: &str, p: &str) { f(\"the {terms} are {ADEQUATE} (p {p}): nothing is missing.\"); \
+        f(\"The model{behind} is {INADEQUATE}: something else is there, `compare` shows where.\"); }";
+    Catalogue::of(&of(sentences), &of("const NAME: &str = \"better\";"))
+}
+
 #[test]
 fn a_verdict_in_another_file_is_found() {
-    let catalogue = catalogue();
-    let text = "/// It is adequate now.\nfn f() { format!(\"the model is adequate\"); g(\"too short to judge\"); h(\"adequate\") }\n\
-                #[cfg(test)] mod tests { fn g() { assert_eq!(axis[\"verdict\"], \"improved\") } }";
+    let catalogue = invented();
+    let text = "/// It is sound now.\nfn f() { format!(\"the model is sound\"); g(\"nothing is missing\"); h(\"sound\") }\n\
+                #[cfg(test)] mod tests { fn g() { assert_eq!(axis[\"verdict\"], \"better\") } }";
     let items = syn::parse_file(text).expect("a file").items;
-    assert_eq!(
-        catalogue.in_rust(&items),
-        ["adequate", "too short to judge", "improved"]
-    );
+    let expected = ["sound", "nothing is missing", "better"];
+    assert_eq!(catalogue.in_rust(&items), expected);
     let files = [
         (
             "a.py",
-            "\"\"\"It is not adequate.\"\"\"\n# It explains the record.\nsaid = \"no effect is missing\"",
+            "\"\"\"It is not sound.\"\"\"\n# Nothing is missing.\nsaid = \"so nothing is missing\"",
         ),
-        ("b.html", "<p>an adequate model</p>"),
+        ("b.html", "<p>a sound model</p>"),
     ];
     let files = files.map(|(name, text)| (name.to_owned(), text.to_owned()));
     let expected = [
-        "a.py: \"no effect is missing\"",
-        "b.html: \"an adequate model\"",
-        "b.html: \"adequate\"",
+        "a.py: \"nothing is missing\"",
+        "b.html: \"a sound model\"",
+        "b.html: \"sound\"",
     ];
     assert_eq!(catalogue.in_others(&files.into()), expected);
 }
@@ -142,19 +150,18 @@ fn pages_quote_verdicts_as_they_are() {
 
 #[test]
 fn a_quoted_verdict_of_other_words_is_found() {
-    let catalogue = catalogue();
+    let catalogue = invented();
     let page = |line: &str| format!("It prints\n\n```text\n{line}\n```\n");
     for right in [
-        "gx: the five terms are adequate (p = 0.420): no effect is missing.",
-        "gz: the five terms and what follows explain a part of the record (p = 6.2e-28)",
-        "The five-term model is not adequate: the record has another effect, which distorts the coefficients. `compare` shows where, and `diagnose` looks for it.",
+        "gx: the five terms are sound (p = 0.420): nothing is missing.",
+        "The model behind a filter is not sound: something else is there, `compare` shows where.",
+        "gx: 3 samples, of which nothing is known.",
     ] {
         assert_eq!(catalogue.outdated(&page(right)), [""; 0]);
     }
     for wrong in [
-        "gx: the five terms are sufficient (p = 0.420): no effect is missing.",
-        "gz: the five terms and what follows explain most of the record (p = 6.2e-28)",
-        "The five-term model is not sufficient: the record has another effect, which distorts the coefficients. `compare` shows where, and `diagnose` looks for it.",
+        "gx: the five terms are adequate (p = 0.420): nothing is missing.",
+        "The model behind a filter is inadequate: something else is there, `compare` shows where.",
     ] {
         assert_eq!(catalogue.outdated(&page(wrong)), [wrong]);
         assert_eq!(catalogue.outdated(wrong), [""; 0], "outside a block");

@@ -1,6 +1,6 @@
 //! Tests `certify`: the certificate of a record says what `diagnose` says of it, and `lot` takes either.
 
-use program::{ADIS16405, json, output, refusal, run};
+use program::{ADIS16405, json, output, refusal, rows, run};
 use serde_json::Value;
 use std::{fs, path::Path};
 use tempfile::TempDir;
@@ -153,37 +153,16 @@ fn what_has_no_certificate_is_refused_in_a_line() {
                 .collect::<String>(),
     )
     .unwrap();
-    for (arguments, what) in [
-        (
-            &["SN-1.csv", "--output", "SN-1.json"][..],
-            "a certificate must end in .bin",
-        ),
-        (
-            &["SN-1.csv", "many.csv", "--output", "x.bin"],
-            "create the folder first",
-        ),
-        (
-            &["many.csv", "--output", "x.bin"],
-            "up to 3 axes, and there are 4",
-        ),
-        (
-            &["a-name-of-many-letters.csv", "--output", "x.bin"],
-            "give a shorter one with --device",
-        ),
-        (
-            &["accelerometer.csv", "--output", "x.bin"],
-            "a certificate is that of a gyro",
-        ),
-        (
-            &["SN-1.csv", "--output", "x.bin", "--firmware", "1.2"],
-            "--firmware",
-        ),
-        (
-            &["SN-1.csv", "--output", "x.bin", "--temperature", "24..22"],
-            "--temperature",
-        ),
-        (&["missing.csv", "--output", "x.bin"], "missing.csv"),
-    ] {
+    for (arguments, what) in rows! {
+        &["SN-1.csv", "--output", "SN-1.json"][..], "a certificate must end in .bin";
+        &["SN-1.csv", "many.csv", "--output", "x.bin"], "create the folder first";
+        &["many.csv", "--output", "x.bin"], "up to 3 axes, and there are 4";
+        &["a-name-of-many-letters.csv", "--output", "x.bin"], "give a shorter one with --device";
+        &["accelerometer.csv", "--output", "x.bin"], "a certificate is that of a gyro";
+        &["SN-1.csv", "--output", "x.bin", "--firmware", "1.2"], "--firmware";
+        &["SN-1.csv", "--output", "x.bin", "--temperature", "24..22"], "--temperature";
+        &["missing.csv", "--output", "x.bin"], "missing.csv";
+    } {
         let refusal = refusal(folder, &[&["-q", "certify"], arguments].concat());
         assert!(refusal.contains(what), "{refusal}");
     }

@@ -1,7 +1,7 @@
 //! Tests `compare`: models with and without effects are compared with the curve they were fitted
 //! to, or with another.
 
-use program::{ADIS16405, json, output, refusal};
+use program::{ADIS16405, json, output, refusal, rows};
 use serde_json::Value;
 use std::path::Path;
 use tempfile::TempDir;
@@ -184,55 +184,23 @@ fn effects_without_parameters_are_fitted() {
 #[test]
 fn impossible_questions_are_refused() {
     let folder = folder();
-    for (arguments, message) in [
-        (
-            &["--with", "sinusiod"][..],
-            "no such effect; did you mean sinusoid? choose from quantization, ",
-        ),
-        (
-            &["--with", "sinusoid:frequency=1"],
-            "there is no parameter \"frequency\"; did you mean frequency_hz? choose from frequency_hz",
-        ),
-        (
-            &["--with", "resonance:frequency_hz~1,quality=2"],
-            "frequency_hz is to be fitted, and quality is not",
-        ),
-        (
-            &["--with", "low_pass:cutoff_hz~20,poles~2"],
-            "poles is a whole number, which is not fitted",
-        ),
-        (
-            &["--filter", "low_pass:cutoff_hz~20"],
-            "cutoff_hz is not fitted here; write cutoff_hz=VALUE",
-        ),
-        (
-            &["--with", "sinusoid:frequency_hz=0"],
-            "frequency_hz=0 is impossible",
-        ),
-        (
-            &["--with", "sinusoid:frequency_hz=1,amplitude=1"],
-            "amplitude is fitted, not given",
-        ),
-        (
-            &["--with", "sinusoid:frequency_hz=100"],
-            "the effect is invisible at a sample rate of 100 Hz",
-        ),
-        (
-            &["--with", "resonance:frequency_hz=1"],
-            "quality is missing",
-        ),
-        (&["--with", "rate_ramp"], "is in the model already"),
-        (
-            &["--without", "sinusoid"],
-            "not in the model; choose from quantization, ",
-        ),
-        (&["--hold-out", "1"], "--hold-out 1 is impossible"),
-        (&["--hold-out", "-0.5"], "--hold-out -0.5 is impossible"),
-        (
-            &["--hold-out", "0.99999"],
-            "1 sample is too few: two octaves need 9",
-        ),
-    ] {
+    for (arguments, message) in rows! {
+        &["--with", "sinusiod"][..], "no such effect; did you mean sinusoid? choose from quantization, ";
+        &["--with", "sinusoid:frequency=1"],
+            "there is no parameter \"frequency\"; did you mean frequency_hz? choose from frequency_hz";
+        &["--with", "resonance:frequency_hz~1,quality=2"], "frequency_hz is to be fitted, and quality is not";
+        &["--with", "low_pass:cutoff_hz~20,poles~2"], "poles is a whole number, which is not fitted";
+        &["--filter", "low_pass:cutoff_hz~20"], "cutoff_hz is not fitted here; write cutoff_hz=VALUE";
+        &["--with", "sinusoid:frequency_hz=0"], "frequency_hz=0 is impossible";
+        &["--with", "sinusoid:frequency_hz=1,amplitude=1"], "amplitude is fitted, not given";
+        &["--with", "sinusoid:frequency_hz=100"], "the effect is invisible at a sample rate of 100 Hz";
+        &["--with", "resonance:frequency_hz=1"], "quality is missing";
+        &["--with", "rate_ramp"], "is in the model already";
+        &["--without", "sinusoid"], "not in the model; choose from quantization, ";
+        &["--hold-out", "1"], "--hold-out 1 is impossible";
+        &["--hold-out", "-0.5"], "--hold-out -0.5 is impossible";
+        &["--hold-out", "0.99999"], "1 sample is too few: two octaves need 9";
+    } {
         let arguments = [&["compare", "log.csv"], arguments].concat();
         let refused = refusal(folder.path(), &arguments);
         assert!(refused.contains(message), "{arguments:?}: {refused}");

@@ -1,7 +1,7 @@
 //! Parts of a log that are left out with `--from`, `--to` and `--drop`, and messages that tell which.
 
 use allanite::diagnosis::Verdict;
-use program::{json, output, refusal, run};
+use program::{json, output, refusal, rows, run};
 use serde_json::Value;
 use std::{fmt::Write as _, fs, path::Path};
 use tempfile::TempDir;
@@ -216,28 +216,16 @@ fn cuts_that_make_no_sense_are_refused_in_a_line() {
         folder.path(),
         &["measure", "log.csv", "--output", "curve.json"],
     );
-    for (options, expected) in [
-        (
-            &["log.csv", "--drop", "900s..950s"][..],
-            "lies behind the end of the log",
-        ),
-        (&["log.csv", "--from", "900s"], "all rows are left out"),
-        (&["log.csv", "--to", "-900s"], "leaves nothing"),
-        (
-            &["log.csv", "--from", "20s", "--to", "10s"],
-            "--to 10s is not behind --from 20s",
-        ),
-        (&["log.csv", "--from", "10"], "write a time with its unit"),
-        (&["log.csv", "--drop", "10s"], "write FROM..TO"),
-        (
-            &["curve.json", "--from", "10s"],
-            "drop the options about logs",
-        ),
-        (
-            &["curve.json", "--drop", "1s..2s"],
-            "drop the options about logs",
-        ),
-    ] {
+    for (options, expected) in rows! {
+        &["log.csv", "--drop", "900s..950s"][..], "lies behind the end of the log";
+        &["log.csv", "--from", "900s"], "all rows are left out";
+        &["log.csv", "--to", "-900s"], "leaves nothing";
+        &["log.csv", "--from", "20s", "--to", "10s"], "--to 10s is not behind --from 20s";
+        &["log.csv", "--from", "10"], "write a time with its unit";
+        &["log.csv", "--drop", "10s"], "write FROM..TO";
+        &["curve.json", "--from", "10s"], "drop the options about logs";
+        &["curve.json", "--drop", "1s..2s"], "drop the options about logs";
+    } {
         let refused = refusal(folder.path(), &[&["fit"], options].concat());
         assert!(refused.contains(expected), "{options:?}: {refused}");
     }

@@ -10,7 +10,7 @@ use allanite_host::{
     curve_file::CurveFile, diagnosis::diagnose, number::probability, verdict::sentence,
 };
 use allanite_log::OCTAVES;
-use program::{ADIS16405, json, output, refusal};
+use program::{ADIS16405, json, output, refusal, rows};
 use serde_json::Value;
 use std::path::Path;
 use tempfile::TempDir;
@@ -230,50 +230,6 @@ fn second_real_gyro_has_lines_on_two_axes_and_is_adequate_on_the_third() {
 }
 
 #[test]
-fn json_has_the_documented_fields_and_no_others() {
-    let document = json(Path::new("."), &["diagnose", ADIS16405]);
-    let keys = |value: &Value| {
-        let mut keys: Vec<String> = value.as_object().unwrap().keys().cloned().collect();
-        keys.sort();
-        keys.join(" ")
-    };
-    assert_eq!(keys(&document), "axes");
-    let axis = &document["axes"][2];
-    // An axis without lines has no field for them.
-    assert_eq!(
-        keys(axis).replace(" lines ", " ").replace(" combs ", " "),
-        "ambiguous axis covariates detection_limits events missing notes spectrum steps verdict"
-    );
-    assert_eq!(
-        keys(&axis["spectrum"][0]),
-        "block density expected frequency_hz z"
-    );
-    let step = &axis["steps"][0];
-    assert_eq!(
-        keys(step),
-        "added birge_ratio candidates chi2 coefficients dof effects error p_value rms_percent worst"
-    );
-    assert_eq!(keys(&step["worst"]), "percent tau_s z");
-    assert_eq!(keys(&step["effects"][0]), "name parameters");
-    assert_eq!(
-        keys(&step["candidates"][0]),
-        "chi2 effect improvement parameters"
-    );
-    assert_eq!(
-        keys(&step["coefficients"][0]),
-        "effect lower state symbol unit upper value"
-    );
-    let line = parameters(&axis["steps"][1], "drifting_sinusoid").unwrap();
-    assert_eq!(keys(line), "amplitude drift_hz frequency_hz");
-    // The last model of this axis is not adequate, so that it has no limits.
-    assert_eq!(axis["detection_limits"].as_array().unwrap().len(), 0);
-    let limit = &document["axes"][0]["detection_limits"][0];
-    for key in ["effect", "limit", "limited", "shapes", "unit"] {
-        assert!(!limit[key].is_null(), "{key}: {limit}");
-    }
-}
-
-#[test]
 fn text_and_json_agree() {
     let document = json(Path::new("."), &["diagnose", ADIS16405]);
     let text = output(Path::new("."), &["diagnose", ADIS16405]);
@@ -327,39 +283,18 @@ fn temperature_column_of_a_record_is_not_taken_as_an_axis() {
 #[test]
 fn effects_that_cannot_be_hidden_are_refused() {
     let folder = TempDir::new().unwrap();
-    for (effect, message) in [
-        (
-            "sinusiod:frequency_hz=1,amplitude=1",
-            "no such effect; choose from gauss_markov, ",
-        ),
-        (
-            "rate_ramp:rate_ramp=1",
-            "is one of the five terms; give --rate-ramp",
-        ),
-        ("sinusoid:frequency_hz=1", "amplitude is missing"),
-        ("gauss_markov:rms=1", "correlation_time_s is missing"),
-        (
-            "gauss_markov:rms=1,correlation_time_s=-1",
-            "correlation_time_s=-1 is impossible",
-        ),
-        (
-            "low_pass:time_constant_s=0",
-            "time_constant_s=0 is impossible",
-        ),
-        (
-            "low_pass:time_constant_s=1,rms=1",
-            "there is no parameter \"rms\"",
-        ),
-        ("thermal:kelvin=5,time_s=1", "slope is missing"),
-        (
-            "thermal:slope=1,kelvin=5",
-            "a temperature needs either time_s or period_s",
-        ),
-        (
-            "thermal:slope=1,kelvin=5,time_s=1,period_s=1",
-            "a temperature needs either time_s or period_s",
-        ),
-    ] {
+    for (effect, message) in rows! {
+        "sinusiod:frequency_hz=1,amplitude=1", "no such effect; choose from gauss_markov, ";
+        "rate_ramp:rate_ramp=1", "is one of the five terms; give --rate-ramp";
+        "sinusoid:frequency_hz=1", "amplitude is missing";
+        "gauss_markov:rms=1", "correlation_time_s is missing";
+        "gauss_markov:rms=1,correlation_time_s=-1", "correlation_time_s=-1 is impossible";
+        "low_pass:time_constant_s=0", "time_constant_s=0 is impossible";
+        "low_pass:time_constant_s=1,rms=1", "there is no parameter \"rms\"";
+        "thermal:kelvin=5,time_s=1", "slope is missing";
+        "thermal:slope=1,kelvin=5", "a temperature needs either time_s or period_s";
+        "thermal:slope=1,kelvin=5,time_s=1,period_s=1", "a temperature needs either time_s or period_s";
+    } {
         let refused = refusal(folder.path(), &["simulate", "mems", "--effect", effect]);
         assert!(refused.contains(message), "{effect}: {refused}");
     }

@@ -3,7 +3,7 @@
 use crate::INVALID;
 use allanite::diagnosis::Verdict;
 use allanite_host::verdict::sentence;
-use program::{json, output, run};
+use program::{json, output, rows, run};
 use serde_json::Value;
 use std::{fs, path::Path};
 use tempfile::TempDir;
@@ -82,28 +82,12 @@ fn has_white_noise(fit: &Value, truth: f64) -> bool {
 #[test]
 fn repeats_of_fine_values_are_left_out_and_the_rate_is_that_of_the_sensor() {
     let folder = TempDir::new().unwrap();
-    for (given_hz, sensor_hz, words) in [
-        (
-            500.0,
-            400.0,
-            "every fifth sample repeats the one before: the sensor runs at 400 Hz",
-        ),
-        (
-            1000.0,
-            500.0,
-            "every second sample repeats the one before: the sensor runs at 500 Hz",
-        ),
-        (
-            150.0,
-            100.0,
-            "every third sample repeats the one before: the sensor runs at 100 Hz",
-        ),
-        (
-            102.0,
-            100.0,
-            "2.0 % of the samples repeat the one before: the sensor runs at 100 Hz",
-        ),
-    ] {
+    for (given_hz, sensor_hz, words) in rows! {
+        500.0, 400.0, "every fifth sample repeats the one before: the sensor runs at 400 Hz";
+        1000.0, 500.0, "every second sample repeats the one before: the sensor runs at 500 Hz";
+        150.0, 100.0, "every third sample repeats the one before: the sensor runs at 100 Hz";
+        102.0, 100.0, "2.0 % of the samples repeat the one before: the sensor runs at 100 Hz";
+    } {
         let sensor = noise(20_000, 0.0024, 1);
         let read = read_faster(&sensor, given_hz / sensor_hz, 20_000);
         write(folder.path(), "gyro_x", &[read], 6);
@@ -251,25 +235,6 @@ fn stuck_clipped_and_cut_out_values_are_said_and_no_effect_is_named() {
         let fit = run(folder.path(), &[&["fit"][..], &log].concat());
         assert!(String::from_utf8_lossy(&fit.stdout).contains(words));
     }
-}
-
-/// Floats that were rounded to three times their noise are coarse, and the gyro was not moved.
-#[test]
-fn rounded_floats_are_coarse() {
-    let folder = TempDir::new().unwrap();
-    let rounded = noise(40_000, 0.05, 3)
-        .iter()
-        .map(|value| (value / 0.15 + 0.2).round() * 0.15)
-        .collect();
-    write(folder.path(), "gx", &[rounded], 6);
-    let log = ["diagnose", "log.csv", "--rate", "100", "--unit", "deg/s"];
-    let diagnosis = json(folder.path(), &log);
-    assert!(
-        diagnosis
-            .to_string()
-            .contains("noise is below half a count"),
-        "{diagnosis}"
-    );
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Tests `merge`: curves of parts of a record are those of the whole, in any order.
 
-use program::{output, refusal};
+use program::{output, refusal, rows};
 use serde_json::Value;
 use std::{fmt::Write as _, fs, path::Path};
 use tempfile::TempDir;
@@ -209,28 +209,16 @@ fn curves_that_do_not_belong_together_are_refused() {
     );
     fs::write(here.join("broken.json"), "{").unwrap();
     fs::copy(here.join("part0.json"), here.join("copy.json")).unwrap();
-    for (other, what) in [
-        (
-            "fast.json",
-            "the rate is 200 Hz, and that of the first file 100 Hz",
-        ),
-        (
-            "radians.json",
-            "the unit is rad/s, and that of the first file deg/s",
-        ),
-        (
-            "scaled.json",
-            "rate_per_count 0.06 is not 0.05 times a power of two",
-        ),
-        ("one-axis.json", "axis \"gx\" is in one of this file"),
-        (
-            "other-sensor.json",
-            "times that of the first file, as of another sensor, range or filter",
-        ),
-        ("copy.json", "it has the same record as \"part0.json\""),
-        ("broken.json", "not a curve file"),
-        ("absent.json", "no such file"),
-    ] {
+    for (other, what) in rows! {
+        "fast.json", "the rate is 200 Hz, and that of the first file 100 Hz";
+        "radians.json", "the unit is rad/s, and that of the first file deg/s";
+        "scaled.json", "rate_per_count 0.06 is not 0.05 times a power of two";
+        "one-axis.json", "axis \"gx\" is in one of this file";
+        "other-sensor.json", "times that of the first file, as of another sensor, range or filter";
+        "copy.json", "it has the same record as \"part0.json\"";
+        "broken.json", "not a curve file";
+        "absent.json", "no such file";
+    } {
         let line = refusal(
             here,
             &["merge", "part0.json", other, "--output", "all.json"],

@@ -1,6 +1,6 @@
 //! The plot of a record agrees with its figures and its text.
 
-use program::{ADIS16405, json, output, refusal};
+use program::{ADIS16405, json, output, refusal, rows};
 use resvg::tiny_skia::Pixmap;
 use roxmltree::Document;
 use serde_json::Value;
@@ -320,25 +320,13 @@ fn picture_of_all_axes_decodes_and_has_letters_without_any_font_installed() {
 fn pictures_that_cannot_be_drawn_are_refused() {
     let folder = TempDir::new().unwrap();
     let absent = ["plot", ADIS16405, "--axis", "gq", "--output", "curve.svg"];
-    for (arguments, message) in [
-        (
-            &["plot", ADIS16405, "--output", "curve.jpg"][..],
-            "curve.jpg: a picture must end in .svg or .png; rename the output",
-        ),
-        (
-            &["plot", ADIS16405, "--output", "curve"],
-            "a picture must end in .svg or .png",
-        ),
-        (
-            &["plot", ADIS16405, "--output", "absent/curve.svg"],
-            "its folder does not exist",
-        ),
-        (
-            &["plot", "absent.csv", "--output", "curve.svg"],
-            "absent.csv: no such file",
-        ),
-        (&absent, "there is no axis \"gq\"; choose from gx, gy, gz"),
-    ] {
+    for (arguments, message) in rows! {
+        &["plot", ADIS16405, "--output", "curve.jpg"][..], "curve.jpg: a picture must end in .svg or .png; rename the output";
+        &["plot", ADIS16405, "--output", "curve"], "a picture must end in .svg or .png";
+        &["plot", ADIS16405, "--output", "absent/curve.svg"], "its folder does not exist";
+        &["plot", "absent.csv", "--output", "curve.svg"], "absent.csv: no such file";
+        &absent, "there is no axis \"gq\"; choose from gx, gy, gz";
+    } {
         let refused = refusal(folder.path(), arguments);
         assert!(refused.contains(message), "{refused}");
     }

@@ -1,7 +1,7 @@
 //! The READMEs and the crate's page show what their readers will see.
 
 use clap::Parser as _;
-use program::output;
+use program::{output, rows};
 use std::{cmp::Reverse, fs, path::Path};
 use xtask::{
     CommandLine, cost,
@@ -352,38 +352,17 @@ fn rounded_figures_of_the_crates_page_are_near_the_budgets() {
     let page = text(CRATE_PAGE);
     let budgets = budgets::committed().unwrap();
     let budgets = &budgets[target(Precision::Single)];
-    for (row, budget) in [
-        (
-            "a sample into an accumulator, any number of octaves",
-            "instructions_per_sample",
-        ),
-        (
-            "RAM of an accumulator of 24 octaves",
-            "ram_bytes_per_axis_24",
-        ),
-        (
-            "flash of accumulator, curve and fit",
-            "flash_bytes_with_fit",
-        ),
-        (
-            "flash with the diagnosis and the whole catalogue",
-            "flash_bytes_with_diagnosis",
-        ),
-        (
-            "flash of accumulator, curve and the fit of the five terms alone",
-            "flash_bytes_with_five_terms",
-        ),
-        ("that fit, of 20 octaves", "instructions_five_terms_20"),
-        ("a fit of 20 octaves", "instructions_fit_20"),
-        (
-            "RAM of a spectrum, for an axis",
-            "ram_bytes_per_axis_of_spectrum",
-        ),
-        (
-            "flash with diagnosis and spectrum",
-            "flash_bytes_with_spectrum",
-        ),
-    ] {
+    for (row, budget) in rows! {
+        "a sample into an accumulator, any number of octaves", "instructions_per_sample";
+        "RAM of an accumulator of 24 octaves", "ram_bytes_per_axis_24";
+        "flash of accumulator, curve and fit", "flash_bytes_with_fit";
+        "flash with the diagnosis and the whole catalogue", "flash_bytes_with_diagnosis";
+        "flash of accumulator, curve and the fit of the five terms alone", "flash_bytes_with_five_terms";
+        "that fit, of 20 octaves", "instructions_five_terms_20";
+        "a fit of 20 octaves", "instructions_fit_20";
+        "RAM of a spectrum, for an axis", "ram_bytes_per_axis_of_spectrum";
+        "flash with diagnosis and spectrum", "flash_bytes_with_spectrum";
+    } {
         let (shown, budget) = (shown_figure(&page, row), budgets[budget].as_f64().unwrap());
         assert!(
             (shown / budget - 1.0).abs() < ROUNDED,

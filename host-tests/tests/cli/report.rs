@@ -5,7 +5,7 @@ use crate::{
     browser::Browser,
     page::{embedded, number, opened, reported, simulate, steps},
 };
-use program::{ADIS16405, measure_without_spectrum, output, refusal};
+use program::{ADIS16405, measure_without_spectrum, output, refusal, rows};
 use serde_json::Value;
 use std::fs;
 use tempfile::TempDir;
@@ -380,23 +380,11 @@ fn a_covariate_is_a_step_and_the_settings_reproduce_the_page() {
 #[test]
 fn pages_that_cannot_be_written_are_refused_before_anything_is_read() {
     let folder = TempDir::new().unwrap();
-    for (input, page, message) in [
-        (
-            ADIS16405,
-            "report.pdf",
-            "report.pdf: a page must end in .html; rename the output",
-        ),
-        (
-            ADIS16405,
-            "absent/report.html",
-            "its folder does not exist; create the folder first",
-        ),
-        (
-            "absent.json",
-            "report.html",
-            "absent.json: no such file; check the path",
-        ),
-    ] {
+    for (input, page, message) in rows! {
+        ADIS16405, "report.pdf", "report.pdf: a page must end in .html; rename the output";
+        ADIS16405, "absent/report.html", "its folder does not exist; create the folder first";
+        "absent.json", "report.html", "absent.json: no such file; check the path";
+    } {
         let refused = refusal(folder.path(), &["report", input, "--output", page]);
         assert!(refused.contains(message), "{refused}");
     }

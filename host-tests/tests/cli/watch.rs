@@ -3,7 +3,7 @@
 use allanite::{Accumulator, course::Course};
 use allanite_host::curve_file::CurveFile;
 use allanite_log::{Axis, Evidence, OCTAVES, SpectrumSums, unit::Unit};
-use program::{command, piped, refusal, signal};
+use program::{command, piped, refusal, rows, signal};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use serialport::{SerialPort, TTYPort};
@@ -365,33 +365,15 @@ fn serial_port_is_read_from_the_first_whole_line() {
 #[test]
 fn impossible_options_are_refused_before_anything_is_read() {
     let folder = TempDir::new().unwrap();
-    for (more, expected) in [
-        (&["--rate", "0"][..], "--rate 0 is impossible; "),
-        (
-            &["--rate", "9", "--scale", "nan"],
-            "--scale NaN is impossible; ",
-        ),
-        (
-            &["--rate", "9", "--axes", "a,a"],
-            "--axes: a name is empty or repeated; ",
-        ),
-        (
-            &["--rate", "9", "--save-every", "0"],
-            "--save-every 0 is impossible; ",
-        ),
-        (
-            &["--rate", "9", "--output", "a.csv"],
-            "a.csv: a curve file must end in .json; ",
-        ),
-        (
-            &["--rate", "9", "--output", "no/a.json"],
-            "no/a.json: its folder does not exist; ",
-        ),
-        (
-            &["--rate", "9", "--port", "/dev/none"],
-            "--port /dev/none: ",
-        ),
-    ] {
+    for (more, expected) in rows! {
+        &["--rate", "0"][..], "--rate 0 is impossible; ";
+        &["--rate", "9", "--scale", "nan"], "--scale NaN is impossible; ";
+        &["--rate", "9", "--axes", "a,a"], "--axes: a name is empty or repeated; ";
+        &["--rate", "9", "--save-every", "0"], "--save-every 0 is impossible; ";
+        &["--rate", "9", "--output", "a.csv"], "a.csv: a curve file must end in .json; ";
+        &["--rate", "9", "--output", "no/a.json"], "no/a.json: its folder does not exist; ";
+        &["--rate", "9", "--port", "/dev/none"], "--port /dev/none: ";
+    } {
         let line = refusal(folder.path(), &[&["watch"], more].concat());
         assert!(line.starts_with(expected), "{line}\nis not\n{expected}");
     }

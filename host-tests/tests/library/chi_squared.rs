@@ -112,20 +112,3 @@ fn a_tail_falls_with_its_start_and_rises_with_the_degrees_of_freedom() {
         }
     }
 }
-
-#[test]
-fn tail_is_defined_at_the_edges_of_its_domain() {
-    for degrees in [1, 2, 11, 30] {
-        for x in [0.0, -0.0, -1.0, f64::NEG_INFINITY] {
-            assert_eq!(chi_squared_tail(x, degrees), 1.0);
-        }
-        assert_eq!(chi_squared_tail(f64::INFINITY, degrees), 0.0);
-        assert_eq!(chi_squared_tail(f64::MAX, degrees), 0.0);
-        assert_eq!(chi_squared_tail(1e5, degrees), 0.0);
-        assert!(chi_squared_tail(f64::NAN, degrees).is_nan());
-        assert!(chi_squared_tail(f64::MIN_POSITIVE, degrees) <= 1.0);
-    }
-    for x in [-1.0, 0.0, 1.0, f64::INFINITY, f64::NAN] {
-        assert!(chi_squared_tail(x, 0).is_nan());
-    }
-}

@@ -1,6 +1,7 @@
 //! The words of data sheets and of the literature lead to what they mean here.
 
 use crate::page::{CRATE_PAGE, module_documentation, text};
+use program::rows;
 use std::process::Command;
 
 const GLOSSARY: &str = "host-tests/doc/glossary.md";
@@ -36,97 +37,20 @@ const WORDS: [&str; 26] = [
 ];
 
 /// The pages and helps on which somebody looks for these words first. `allanite X` is the help of a command.
-const PLACES: [(&str, &[&str]); 9] = [
-    (
-        "README.md",
-        &[
-            "ARW",
-            "rate noise density",
-            "in-run bias stability",
-            "overlapping Allan deviation",
-            "NIST SP 1065",
-            "PSD",
-            "Welch",
-        ],
-    ),
-    (
-        "src/README.md",
-        &[
-            "ARW",
-            "rate noise density",
-            "in-run bias stability",
-            "overlapping Allan deviation",
-            "PSD",
-        ],
-    ),
-    (
-        CRATE_PAGE,
-        &[
-            "ARW",
-            "rate noise density",
-            "in-run bias stability",
-            "VRW",
-            "overlapping Allan",
-            "SP 1065",
-            "PSD",
-            "Welch",
-            "EDF",
-            "block history",
-            "saturation",
-            "gap filling",
-        ],
-    ),
-    (
-        "host-tests/doc/reading.md",
-        &[
-            "ARW",
-            "in-run bias stability",
-            "VRW",
-            "ADEV",
-            "PSD",
-            "ASD",
-            "EDF",
-            "saturation",
-        ],
-    ),
-    (
-        "host-tests/doc/effects.md",
-        &["CIC", "boxcar", "block history", "trend"],
-    ),
-    (
-        "host-tests/doc/metrology.md",
-        &[
-            "EDF",
-            "PSD",
-            "Welch",
-            "SP 1065",
-            "gap filling",
-            "block history",
-        ],
-    ),
-    (
-        "allanite fit",
-        &[
-            "ARW",
-            "rate noise density",
-            "in-run bias stability",
-            "VRW",
-            "EDF",
-        ],
-    ),
-    (
-        "allanite measure",
-        &[
-            "overlapping Allan",
-            "SP 1065",
-            "PSD",
-            "Welch",
-            "block history",
-            "gap filling",
-        ],
-    ),
-    ("allanite diagnose", &["PSD", "CIC", "boxcar", "saturation"]),
-];
+const PLACES: [(&str, &[&str]); 9] = rows! {
+    "README.md",
+        &["ARW", "rate noise density", "in-run bias stability", "overlapping Allan deviation", "NIST SP 1065", "PSD", "Welch"];
+    "src/README.md", &["ARW", "rate noise density", "in-run bias stability", "overlapping Allan deviation", "PSD"];
+    CRATE_PAGE,
+        &["ARW", "rate noise density", "in-run bias stability", "VRW", "overlapping Allan", "SP 1065", "PSD", "Welch", "EDF",
+            "block history", "saturation", "gap filling"];
+    "host-tests/doc/reading.md", &["ARW", "in-run bias stability", "VRW", "ADEV", "PSD", "ASD", "EDF", "saturation"];
+    "host-tests/doc/effects.md", &["CIC", "boxcar", "block history", "trend"];
+    "host-tests/doc/metrology.md", &["EDF", "PSD", "Welch", "SP 1065", "gap filling", "block history"];
+    "allanite fit", &["ARW", "rate noise density", "in-run bias stability", "VRW", "EDF"];
+    "allanite measure", &["overlapping Allan", "SP 1065", "PSD", "Welch", "block history", "gap filling"];
+    "allanite diagnose", &["PSD", "CIC", "boxcar", "saturation"];
+};
 
 /// The names of each row of the glossary, in small letters.
 fn rows() -> Vec<Vec<String>> {

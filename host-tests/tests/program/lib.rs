@@ -7,6 +7,14 @@ use std::{
     process::{Child, Command, Output, Stdio},
 };
 
+/// A list of tuples whose rows stand on a line each, as in a table.
+#[macro_export]
+macro_rules! rows {
+    ($($($cell:expr),+;)*) => {
+        [$(($($cell),+)),*]
+    };
+}
+
 /// Curves of a real gyro.
 pub const ADIS16405: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/adis16405.json");
 

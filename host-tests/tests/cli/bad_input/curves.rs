@@ -1,4 +1,4 @@
-//! Bad curve files.
+//! Bad curve files: one of each kind, and those that are hostile. `curve_file.rs` tests every message.
 
 use super::case::{Case, refused};
 use program::ADIS16405;
@@ -26,38 +26,15 @@ pub(crate) fn cases() -> Vec<Case> {
     };
     let follows = "does not follow from the sum";
     let texts: Vec<(String, &str)> = table! {
-        String::new() => "not a curve file";
-        "{}".into() => "missing field `format`";
         "[".repeat(100_000) => "not a curve file";
-        "[1, 2]".into() => "not a curve file";
         text[..text.len() / 2].into() => "not a curve file: EOF";
-        format!("{text}{text}") => "trailing characters";
-        text.replacen("100.0", "NaN", 1) => "not a curve file";
-        text.replacen("100.0", "1e999", 1) => "number out of range";
-        with("/format", json!("other")) => "the format is \"other\"";
         with("/format", json!("\u{1b}[2J")) => "the format is";
         with("/version", json!(99)) => "a.json: the format has version 99, but this program reads versions 1 to 5; ";
-        with("/axes", json!([])) => "the file has no axes";
-        with("/axes/0/axis", json!("")) => "axis 1 has no name";
-        with("/axes/0/axis", json!("x".repeat(5000))) => "axis 1: the name";
-        with("/axes/1/axis", good["axes"][0]["axis"].clone()) => "two axes are named";
-        with("/axes/0/rate_hz", json!(0.0)) => "rate_hz 0 is impossible";
-        with("/axes/0/rate_hz", json!(-1.0)) => "rate_hz -1 is impossible";
         with("/axes/0/rate_hz", json!(1e300)) => "rate_hz 1.000e300 is impossible";
-        with("/axes/0/rate_hz", json!(50.0)) => "is not m / rate_hz";
-        with("/axes/0/rate_per_count", json!(1e300)) => follows;
         with("/axes/0/rate_per_count", json!(1e-300)) => follows;
-        with("/axes/0/rate_per_count", json!(0.0)) => "rate_per_count 0 is impossible";
         with("/axes/0/unit", json!("furlong/s")) => "unknown variant";
         with("/axes/0/samples", json!(u64::MAX)) => "samples are impossible";
-        with("/axes/0/samples", json!(7)) => "samples are impossible";
-        with("/axes/0/gaps", json!(u64::MAX)) => "samples are impossible";
-        with("/axes/0/octaves", json!([])) => "a fit needs two octaves";
-        with("/axes/0/octaves/1/m", json!(3)) => "a.json: axis \"gx\": octave m = 3: the averaging factor is not a power of two";
-        with("/axes/0/octaves/1/m", json!(0)) => "averaging factors must ascend";
-        with("/axes/0/octaves/1/differences", json!(5)) => "are impossible";
         with("/axes/0/octaves/1/sum", json!(0)) => follows;
-        with("/axes/0/octaves/1/variance", json!(-1.0)) => follows;
         with("/axes/0/octaves/1/variance", json!(1e308)) => follows;
         with("/axes/0/octaves/1/tau_s", json!(1e308)) => "is not m / rate_hz";
         axes(65) => "the file has 65 axes, more than 64";

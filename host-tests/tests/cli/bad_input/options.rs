@@ -33,21 +33,25 @@ pub(crate) fn cases() -> Vec<Case> {
         refused("a.csv", good(60), &format!("fit a.csv {options}"), expected)
     };
     let simulated = table! {
-        "" => "no preset and no coefficient is given";
-        "mems --rate 0" => "--rate 0 is impossible";
+        "" => "no preset and no coefficient is given; ";
+        "mems --rate 0" => "--rate 0 is impossible; ";
+        "mems --rate nan" => "--rate NaN is impossible; ";
         "mems --rate 1e300 --duration 1" => "is impossible";
-        "mems --duration 0" => "is impossible";
-        "mems --duration -1" => "is impossible";
+        "mems --duration 0" => "--duration 0 at 100 Hz is impossible; ";
+        "mems --duration -1" => "--duration -1 at 100 Hz is impossible; ";
+        "mems --duration inf" => "--duration inf at 100 Hz is impossible; ";
         "mems --duration 1e300" => "is impossible";
-        "mems --duration soon" => "is not a length of time";
+        "mems --duration soon" => "--duration \"soon\" is not a length of time";
         "mems --axes 4" => "--axes 4 is impossible";
-        "mems --axes 0" => "--axes 0 is impossible";
+        "mems --axes 0" => "--axes 0 is impossible; ";
+        "mems --scale 0" => "--scale 0 is impossible; ";
+        "mems --rate-ramp -1" => "--rate-ramp -1 is impossible; ";
         "mems --scale 1e-300 --duration 1" => "does not fit into a 32-bit count";
         "mems --angle-random-walk nan --duration 1" => "is impossible";
         "--angle-random-walk 1e308 --rate 1e4 --duration 1" => "exceeds the range of numbers";
         "--rate-ramp 1e308 --rate 1 --duration 100" => "exceeds the range of numbers";
         "--quantization 1e308 --duration 1" => "exceeds the range of numbers";
-        "mems -o a.txt" => "extension is not that of a log";
+        "mems -o a.txt" => "a.txt: the file's extension is not that of a log; ";
         "mems -o none/a.csv" => "its folder does not exist";
         "mems --effect decimation_filter:width_s=1e9,stages=2" => "is too wide";
         "mems --effect none" => "no such effect";

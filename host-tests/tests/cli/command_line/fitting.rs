@@ -2,7 +2,7 @@
 
 use super::{Document, fit, folder};
 use program::{output, refusal};
-use std::{fs, path::Path};
+use std::fs;
 use tempfile::TempDir;
 
 #[test]
@@ -250,26 +250,6 @@ fn accelerometers_have_their_own_words_and_units() {
         line.starts_with("presets describe gyros, but --unit g is for accelerometers; "),
         "{line}"
     );
-}
-
-#[test]
-fn logs_of_other_programs_are_fitted_without_an_option() {
-    let folder = TempDir::new().unwrap();
-    let fixtures = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/fixtures");
-    for name in ["euroc.csv", "imu-zstd.mcap", "ros1.mcap", "gyro.ulg"] {
-        let path = fixtures.join(name);
-        let path = path.to_str().unwrap();
-        let gyro = output(folder.path(), &["fit", path]);
-        assert!(
-            gyro.contains("angle random walk") && gyro.contains("at 200 Hz"),
-            "{gyro}"
-        );
-        let acceleration = output(folder.path(), &["fit", path, "--sensor", "accel"]);
-        assert!(
-            acceleration.contains("velocity random walk"),
-            "{acceleration}"
-        );
-    }
 }
 
 /// Nobody sees in a record what flicker noise is below the sample interval. Where it is as strong as the white noise of a

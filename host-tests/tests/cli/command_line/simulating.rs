@@ -1,7 +1,7 @@
 //! Simulates logs on the command line.
 
-use program::{command, output, refusal};
-use std::{fs, path::Path, process::Stdio};
+use program::{command, output};
+use std::{path::Path, process::Stdio};
 use tempfile::TempDir;
 
 #[test]
@@ -51,51 +51,6 @@ fn simulation_depends_on_the_seed_and_nothing_else() {
     ] {
         assert!(comment.contains(word), "{comment}");
     }
-}
-
-#[test]
-fn impossible_simulations_are_refused() {
-    let folder = TempDir::new().unwrap();
-    for (arguments, expected) in [
-        (&[][..], "no preset and no coefficient is given; "),
-        (&["mems", "--rate", "0"], "--rate 0 is impossible; "),
-        (&["mems", "--rate", "nan"], "--rate NaN is impossible; "),
-        (
-            &["mems", "--duration", "0"],
-            "--duration 0 at 100 Hz is impossible; ",
-        ),
-        (
-            &["mems", "--duration", "-3"],
-            "--duration -3 at 100 Hz is impossible; ",
-        ),
-        (
-            &["mems", "--duration", "inf"],
-            "--duration inf at 100 Hz is impossible; ",
-        ),
-        (
-            &["mems", "--duration", "long"],
-            "--duration \"long\" is not a length of time; ",
-        ),
-        (&["mems", "--axes", "0"], "--axes 0 is impossible; "),
-        (&["mems", "--axes", "4"], "--axes 4 is impossible; "),
-        (&["mems", "--scale", "0"], "--scale 0 is impossible; "),
-        (
-            &["mems", "--rate-ramp", "-1"],
-            "--rate-ramp -1 is impossible; ",
-        ),
-        (
-            &["mems", "--output", "a.txt"],
-            "a.txt: the file's extension is not that of a log; ",
-        ),
-        (
-            &["mems", "--output", "a.csv", "--scale", "1e-300"],
-            "a rate of ",
-        ),
-    ] {
-        let line = refusal(folder.path(), &[&["simulate"], arguments].concat());
-        assert!(line.starts_with(expected), "{line}");
-    }
-    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
 }
 
 #[test]

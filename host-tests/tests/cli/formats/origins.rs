@@ -2,6 +2,7 @@
 
 use super::{GYRO, assert_sums, counts, try_read};
 use allanite_log::{Log, Options, unit::Unit};
+use program::rows;
 use std::{collections::BTreeSet, path::Path};
 
 const MANIFEST: &str = env!("CARGO_MANIFEST_DIR");
@@ -154,32 +155,16 @@ fn units_by_convention_and_rates_of_preambles_are_said() {
             .join(name);
         try_read(&path, &options(option)).unwrap().notes.join("\n")
     };
-    for (name, option, expected) in [
-        (
-            "mavlogdump.csv",
-            "",
-            "unit rad/s by the convention of ArduPilot",
-        ),
-        ("rostopic.csv", "", "unit rad/s by the convention of ROS"),
-        (
-            "Gyroscope.csv",
-            "",
-            "unit rad/s by the convention of phones",
-        ),
-        (
-            "vectornav.csv",
-            "",
-            "unit rad/s by the convention of VectorNav",
-        ),
-        ("xsens-dot.csv", "", "60 Hz from row 5 above the header"),
-        (
-            "blackbox_decode.01.csv",
-            "",
-            "unit deg/s by the convention of Betaflight",
-        ),
-        ("putty", "--rate 200", "no unit given: deg/s assumed"),
-        ("blanks.log", "", "about 500 samples lost"),
-    ] {
+    for (name, option, expected) in rows! {
+        "mavlogdump.csv", "", "unit rad/s by the convention of ArduPilot";
+        "rostopic.csv", "", "unit rad/s by the convention of ROS";
+        "Gyroscope.csv", "", "unit rad/s by the convention of phones";
+        "vectornav.csv", "", "unit rad/s by the convention of VectorNav";
+        "xsens-dot.csv", "", "60 Hz from row 5 above the header";
+        "blackbox_decode.01.csv", "", "unit deg/s by the convention of Betaflight";
+        "putty", "--rate 200", "no unit given: deg/s assumed";
+        "blanks.log", "", "about 500 samples lost";
+    } {
         let notes = said(name, option);
         assert!(notes.contains(expected), "{name}: {notes}");
     }

@@ -4,6 +4,7 @@ use super::{counts, read_text};
 use allanite::Accumulator;
 use allanite_host::curve_file::{AxisCurve, CurveFile};
 use allanite_log::{Log, OCTAVES, Options, TimeUnit, unit::Unit};
+use program::rows;
 use rand::{RngExt, SeedableRng};
 use rand_distr::StandardNormal;
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -225,53 +226,17 @@ fn unusable_stamps_are_refused_with_their_row() {
 
 #[test]
 fn stamps_without_a_unit_are_refused_if_several_units_fit() {
-    for (header, step, expected) in [
-        (
-            "t,gx [deg/s]",
-            1,
-            "t: no unit is told, and it may be s (1 Hz) or ms (1000 Hz)",
-        ),
-        (
-            "time,gx [deg/s]",
-            5,
-            "time: no unit is told, and it may be s (0.2 Hz) or ms (200 Hz)",
-        ),
-        (
-            "timestamp,gx [deg/s]",
-            10,
-            "may be s (0.1 Hz) or ms (100 Hz)",
-        ),
-        (
-            "timestamp,gx [deg/s]",
-            50,
-            "may be ms (20 Hz) or µs (20000 Hz)",
-        ),
-        (
-            "timestamp,gx [deg/s]",
-            40_000,
-            "may be µs (25 Hz) or ns (25000 Hz)",
-        ),
-        (
-            "timestamp,gx [deg/s]",
-            400_000_000_000,
-            "no unit is told, and none gives a usual rate",
-        ),
-        (
-            "t [min],gx [deg/s]",
-            1,
-            "time column t [min]: the unit \"min\" is not known",
-        ),
-        (
-            "time_10us,gx [deg/s]",
-            500,
-            "the unit \"10us\" is not known",
-        ),
-        (
-            "time_hours,gx [deg/s]",
-            1,
-            "the unit \"hours\" is not known",
-        ),
-    ] {
+    for (header, step, expected) in rows! {
+        "t,gx [deg/s]", 1, "t: no unit is told, and it may be s (1 Hz) or ms (1000 Hz)";
+        "time,gx [deg/s]", 5, "time: no unit is told, and it may be s (0.2 Hz) or ms (200 Hz)";
+        "timestamp,gx [deg/s]", 10, "may be s (0.1 Hz) or ms (100 Hz)";
+        "timestamp,gx [deg/s]", 50, "may be ms (20 Hz) or µs (20000 Hz)";
+        "timestamp,gx [deg/s]", 40_000, "may be µs (25 Hz) or ns (25000 Hz)";
+        "timestamp,gx [deg/s]", 400_000_000_000, "no unit is told, and none gives a usual rate";
+        "t [min],gx [deg/s]", 1, "time column t [min]: the unit \"min\" is not known";
+        "time_10us,gx [deg/s]", 500, "the unit \"10us\" is not known";
+        "time_hours,gx [deg/s]", 1, "the unit \"hours\" is not known";
+    } {
         let text = stamped(header, (0..200).map(|i| i * step));
         let line = read_text(&text, &Options::default()).unwrap_err();
         assert!(

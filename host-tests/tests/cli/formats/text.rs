@@ -3,6 +3,7 @@
 use super::{counts, read_text};
 use allanite::Accumulator;
 use allanite_log::{OCTAVES, Options};
+use program::rows;
 use std::fmt::Write as _;
 
 fn rate(rate_hz: f64) -> Options {
@@ -99,36 +100,15 @@ fn the_reason_why_the_rate_is_not_known_is_named() {
             .map(|(i, row)| format!("{},{}\n", first(i), row[0]));
         format!("{header}{}", lines.collect::<String>())
     };
-    for (text, expected) in [
-        (
-            rows(","),
-            "there is no header, and no column rises as a time does",
-        ),
-        (
-            format!("gx,gy,gz\n{}", rows(",")),
-            "none of the columns gx, gy, gz is named like a time",
-        ),
-        (
-            numbered("time,gx\n", &|_| "7".into()),
-            "the values of time do not advance",
-        ),
-        (
-            numbered("time,gx\n", &|i| format!("{i}h")),
-            "the values of time are neither numbers nor dates of ISO 8601",
-        ),
-        (
-            numbered("n,gx\n", &|i| i.to_string()),
-            "n only counts rows, and no column is a time",
-        ),
-        (
-            numbered("tick,gx\n", &|i| (5 * i).to_string()),
-            "no column is named like a time, though tick rises",
-        ),
-        (
-            numbered("", &|i| format!("{},{}", 5 * i, 7 * i)),
-            "there is no header, and column 1, column 2 all rise as times do",
-        ),
-    ] {
+    for (text, expected) in rows! {
+        rows(","), "there is no header, and no column rises as a time does";
+        format!("gx,gy,gz\n{}", rows(",")), "none of the columns gx, gy, gz is named like a time";
+        numbered("time,gx\n", &|_| "7".into()), "the values of time do not advance";
+        numbered("time,gx\n", &|i| format!("{i}h")), "the values of time are neither numbers nor dates of ISO 8601";
+        numbered("n,gx\n", &|i| i.to_string()), "n only counts rows, and no column is a time";
+        numbered("tick,gx\n", &|i| (5 * i).to_string()), "no column is named like a time, though tick rises";
+        numbered("", &|i| format!("{},{}", 5 * i, 7 * i)), "there is no header, and column 1, column 2 all rise as times do";
+    } {
         let line = read_text(&text, &Options::default()).unwrap_err();
         let expected = format!(
             "a.csv: the sampling rate is not known: {expected}; \

@@ -7,6 +7,7 @@ use allanite_log::{
     Options,
     unit::{Sensor, Unit},
 };
+use program::rows;
 use std::fmt::Write as _;
 
 #[test]
@@ -85,58 +86,36 @@ fn detected_columns_units_and_rate_are_noted_on_one_line() {
 
 #[test]
 fn bags_and_logs_of_no_or_several_sensors_are_refused_with_a_list_of_their_topics() {
-    for (name, options, expected) in [
-        (
-            "two-imus.mcap",
+    for (name, options, expected) in rows! {
+        "two-imus.mcap",
             Options::default(),
-            "two-imus.mcap: there are 2 IMU topics: /imu/left, /imu/right; choose one with --topic",
-        ),
-        (
-            "two-imus.mcap",
+            "two-imus.mcap: there are 2 IMU topics: /imu/left, /imu/right; choose one with --topic";
+        "two-imus.mcap",
             topic("/words"),
             "two-imus.mcap: no IMU topic is named \"/words\"; \
-             choose with --topic from /imu/left, /imu/right",
-        ),
-        (
-            "no-imu.mcap",
+             choose with --topic from /imu/left, /imu/right";
+        "no-imu.mcap",
             Options::default(),
             "no-imu.mcap: no topic of sensor_msgs/msg/Imu: \
-             only /words (std_msgs/msg/String, cdr); give a bag with an IMU, or name a topic of other messages with rates with --topic",
-        ),
-        (
-            "no-gyro.ulg",
+             only /words (std_msgs/msg/String, cdr); give a bag with an IMU, or name a topic of other messages with rates with --topic";
+        "no-gyro.ulg",
             Options::default(),
             "no-gyro.ulg: no topic of sensor_gyro, sensor_accel, sensor_combined, vehicle_imu with \
              messages: there are cpuload:0; \
-             log one of these, or choose with --topic and --columns",
-        ),
-        (
-            "two-gyros.ulg",
+             log one of these, or choose with --topic and --columns";
+        "two-gyros.ulg",
             Options::default(),
             "two-gyros.ulg: 2 topics fit equally well: sensor_gyro:0, sensor_gyro:1; \
-             choose one with --topic",
-        ),
-        (
-            "gyro.ulg",
+             choose one with --topic";
+        "gyro.ulg",
             topic("sensor_gyro:1"),
             "gyro.ulg: no topic \"sensor_gyro:1\" has messages; \
-             choose with --topic from sensor_gyro:0, sensor_combined:0, cpuload:0",
-        ),
-        (
-            "euroc.csv",
-            topic("/imu"),
-            "euroc.csv: this kind of log has no topics; omit --topic",
-        ),
-        (
-            "stamped.npy",
-            Options {
-                sensor: Some(Sensor::Gyro),
-                unit: Some(Unit::StandardGravity),
-                ..Options::default()
-            },
-            "--unit g is not a unit of a gyro; give another --unit or --sensor",
-        ),
-    ] {
+             choose with --topic from sensor_gyro:0, sensor_combined:0, cpuload:0";
+        "euroc.csv", topic("/imu"), "euroc.csv: this kind of log has no topics; omit --topic";
+        "stamped.npy",
+            Options { sensor: Some(Sensor::Gyro), unit: Some(Unit::StandardGravity), ..Options::default() },
+            "--unit g is not a unit of a gyro; give another --unit or --sensor";
+    } {
         assert_eq!(try_read(&fixture(name), &options).unwrap_err(), expected);
     }
 }

@@ -9,6 +9,7 @@ use allanite_log::{
     npy_header::{Header, Kind},
     unit::Unit,
 };
+use program::rows;
 use std::fmt::Write as _;
 
 #[test]
@@ -31,66 +32,33 @@ fn every_format_gives_the_same_counts() {
     let bytes =
         |elements: &mut dyn Iterator<Item = Vec<u8>>| elements.flatten().collect::<Vec<u8>>();
 
-    let logs = [
-        ("header.csv", format!("gx,gy,gz\n{text}").into_bytes()),
-        ("bare.csv", text.clone().into_bytes()),
-        ("BARE.CSV", text.clone().into_bytes()),
-        (
-            "windows.csv",
-            format!("\u{feff}gx,gy,gz\r\n{}", text.replace('\n', "\r\n")).into_bytes(),
-        ),
-        ("semicolons.csv", text.replace(',', ";").into_bytes()),
-        ("tabs.csv", text.replace(',', "\t").into_bytes()),
-        (
-            "comments.csv",
-            text.replace("7\n", "7\n# lost 0 samples\n\n").into_bytes(),
-        ),
-        ("endless.csv", text.trim_end().as_bytes().to_vec()),
-        ("quoted.csv", quoted.into_bytes()),
-        ("whole.csv", whole_floats.into_bytes()),
-        (
-            "packed.csv.gz",
-            gzip(format!("gx,gy,gz\n{text}").as_bytes()),
-        ),
-        (
-            "members.csv.gz",
-            [gzip(b"gx,gy,gz\n"), gzip(text.as_bytes())].concat(),
-        ),
-        (
-            "i4.npy",
+    let logs = rows! {
+        "header.csv", format!("gx,gy,gz\n{text}").into_bytes();
+        "bare.csv", text.clone().into_bytes();
+        "BARE.CSV", text.clone().into_bytes();
+        "windows.csv", format!("\u{feff}gx,gy,gz\r\n{}", text.replace('\n', "\r\n")).into_bytes();
+        "semicolons.csv", text.replace(',', ";").into_bytes();
+        "tabs.csv", text.replace(',', "\t").into_bytes();
+        "comments.csv", text.replace("7\n", "7\n# lost 0 samples\n\n").into_bytes();
+        "endless.csv", text.trim_end().as_bytes().to_vec();
+        "quoted.csv", quoted.into_bytes();
+        "whole.csv", whole_floats.into_bytes();
+        "packed.csv.gz", gzip(format!("gx,gy,gz\n{text}").as_bytes());
+        "members.csv.gz", [gzip(b"gx,gy,gz\n"), gzip(text.as_bytes())].concat();
+        "i4.npy", npy(&header(Kind::Signed, 4, &[n, 3]), &bytes(&mut flat().map(|count| count.to_le_bytes().to_vec())));
+        "i2.npy",
             npy(
-                &header(Kind::Signed, 4, &[n, 3]),
-                &bytes(&mut flat().map(|count| count.to_le_bytes().to_vec())),
-            ),
-        ),
-        (
-            "i2.npy",
-            npy(
-                &Header {
-                    big_endian: true,
-                    ..header(Kind::Signed, 2, &[n, 3])
-                },
+                &Header { big_endian: true, ..header(Kind::Signed, 2, &[n, 3]) },
                 &bytes(&mut flat().map(|count| (count as i16).to_be_bytes().to_vec())),
-            ),
-        ),
-        (
-            "f8.npy",
+            );
+        "f8.npy",
+            npy(&header(Kind::Float, 8, &[n, 3]), &bytes(&mut flat().map(|count| f64::from(count).to_le_bytes().to_vec())));
+        "f4-by-column.npy",
             npy(
-                &header(Kind::Float, 8, &[n, 3]),
-                &bytes(&mut flat().map(|count| f64::from(count).to_le_bytes().to_vec())),
-            ),
-        ),
-        (
-            "f4-by-column.npy",
-            npy(
-                &Header {
-                    fortran_order: true,
-                    ..header(Kind::Float, 4, &[n, 3])
-                },
+                &Header { fortran_order: true, ..header(Kind::Float, 4, &[n, 3]) },
                 &bytes(&mut by_column().map(|count| (count as f32).to_le_bytes().to_vec())),
-            ),
-        ),
-    ];
+            );
+    };
     for (name, bytes) in logs {
         let log = read(name, &bytes, &at_100_hz());
         let names: Vec<_> = log.axes.iter().map(|axis| axis.name.as_str()).collect();

@@ -12,7 +12,7 @@ use devices::{
     BEFORE, DEVICES, Lot, certificate, encoded, has_become_noisy, has_begun_to_walk, has_line,
     is_noisy, is_unstable, lot, name, truth,
 };
-use program::{command, json, refusal};
+use program::{command, json, refusal, rows};
 use rayon::prelude::*;
 use serde_json::Value;
 use std::{collections::BTreeSet, fs};
@@ -208,33 +208,18 @@ fn what_is_no_lot_is_refused_in_a_line() {
     }
     fs::write(path.join("c.bin"), b"no certificate").unwrap();
     fs::create_dir(path.join("empty")).unwrap();
-    for (arguments, what) in [
-        (&["a.bin", "--limit", "N"][..], "there is no value"),
-        (&["a.bin", "--limit", "Z=1"], "there is no such effect"),
-        (&["a.bin", "--limit", "N=-1"], "is not a positive number"),
-        (
-            &["a.bin", "--limit", "N=1°/h"],
-            "angle_random_walk has no such unit",
-        ),
-        (
-            &["a.bin", "--limit", "N=1", "--limit", "angle_random_walk=2"],
-            "angle_random_walk has two limits",
-        ),
-        (
-            &["a.bin", "--limit", "N=1", "--risk", "0.5"],
-            "this is no risk",
-        ),
-        (
-            &["a.bin", "b.bin", "--limit", "N=1"],
-            "device SN-0005 is in a.bin, too",
-        ),
-        (&["c.bin", "--limit", "N=1"], "c.bin"),
-        (&["missing.bin", "--limit", "N=1"], "missing.bin"),
-        (
-            &["empty", "--limit", "N=1"],
-            "there is no certificate, curve file or log in this folder",
-        ),
-    ] {
+    for (arguments, what) in rows! {
+        &["a.bin", "--limit", "N"][..], "there is no value";
+        &["a.bin", "--limit", "Z=1"], "there is no such effect";
+        &["a.bin", "--limit", "N=-1"], "is not a positive number";
+        &["a.bin", "--limit", "N=1°/h"], "angle_random_walk has no such unit";
+        &["a.bin", "--limit", "N=1", "--limit", "angle_random_walk=2"], "angle_random_walk has two limits";
+        &["a.bin", "--limit", "N=1", "--risk", "0.5"], "this is no risk";
+        &["a.bin", "b.bin", "--limit", "N=1"], "device SN-0005 is in a.bin, too";
+        &["c.bin", "--limit", "N=1"], "c.bin";
+        &["missing.bin", "--limit", "N=1"], "missing.bin";
+        &["empty", "--limit", "N=1"], "there is no certificate, curve file or log in this folder";
+    } {
         let refusal = refusal(path, &[&["lot"], arguments].concat());
         assert!(refusal.contains(what), "{refusal}");
     }

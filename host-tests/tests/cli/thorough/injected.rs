@@ -1,7 +1,7 @@
 //! Every call of the system that a command makes may fail, and the command may be killed at any of them: its output is then the
 //! file that was there or the new one, and never anything else.
 
-use program::command;
+use program::{command, rows};
 use std::{
     collections::BTreeSet,
     fs,
@@ -11,37 +11,16 @@ use std::{
 use tempfile::TempDir;
 
 /// The commands that write a file, and the file.
-const COMMANDS: [(&[&str], &str); 8] = [
-    (&["measure", "log.csv", "-o", "out.json"], "out.json"),
-    (
-        &["merge", "one.json", "other.json", "-o", "out.json"],
-        "out.json",
-    ),
-    (
-        &["report", "one.json", "--plain", "-o", "out.html"],
-        "out.html",
-    ),
-    (&["plot", "one.json", "-o", "out.svg"], "out.svg"),
-    (&["plot", "one.json", "-o", "out.png"], "out.png"),
-    (
-        &[
-            "export",
-            "one.json",
-            "--format",
-            "csv",
-            "--model",
-            "five-terms",
-            "-o",
-            "out.csv",
-        ],
-        "out.csv",
-    ),
-    (
-        &["simulate", "mems", "--duration", "30s", "-o", "out.csv"],
-        "out.csv",
-    ),
-    (&["certify", "one.json", "-o", "out.bin"], "out.bin"),
-];
+const COMMANDS: [(&[&str], &str); 8] = rows! {
+    &["measure", "log.csv", "-o", "out.json"], "out.json";
+    &["merge", "one.json", "other.json", "-o", "out.json"], "out.json";
+    &["report", "one.json", "--plain", "-o", "out.html"], "out.html";
+    &["plot", "one.json", "-o", "out.svg"], "out.svg";
+    &["plot", "one.json", "-o", "out.png"], "out.png";
+    &["export", "one.json", "--format", "csv", "--model", "five-terms", "-o", "out.csv"], "out.csv";
+    &["simulate", "mems", "--duration", "30s", "-o", "out.csv"], "out.csv";
+    &["certify", "one.json", "-o", "out.bin"], "out.bin";
+};
 
 /// The calls that a file is read and written by.
 pub(crate) const CALLS: [&str; 14] = [

@@ -1,7 +1,6 @@
 //! Tests `certify`: the certificate of a record says what `diagnose` says of it, and `lot` takes either.
 
-use program::{ADIS16405, json, output, refusal, rows, run};
-use serde_json::Value;
+use program::{ADIS16405, json, number, output, refusal, rows, run};
 use std::{fs, path::Path};
 use tempfile::TempDir;
 
@@ -19,10 +18,6 @@ fn simulate(folder: &Path, name: &str, seed: u32, more: &[&str]) {
         &log,
     ];
     output(folder, &[&arguments[..], more].concat());
-}
-
-fn number(value: &Value) -> f64 {
-    value.as_f64().unwrap_or_else(|| panic!("{value}"))
 }
 
 #[test]

@@ -1,14 +1,10 @@
 //! Tests `compare`: models with and without effects are compared with the curve they were fitted
 //! to, or with another.
 
-use program::{ADIS16405, json, output, refusal, rows};
+use program::{ADIS16405, json, number, output, refusal, rows};
 use serde_json::Value;
 use std::path::Path;
 use tempfile::TempDir;
-
-fn number(value: &Value) -> f64 {
-    value.as_f64().unwrap_or_else(|| panic!("{value}"))
-}
 
 /// A folder with a log of 2^16 samples at 100 Hz that contains a sinusoid.
 fn folder() -> TempDir {

@@ -10,16 +10,12 @@ use allanite_host::{
     curve_file::CurveFile, diagnosis::diagnose, number::probability, verdict::sentence,
 };
 use allanite_log::OCTAVES;
-use program::{ADIS16405, json, output, refusal, rows};
+use program::{ADIS16405, json, number, output, refusal, rows};
 use serde_json::Value;
 use std::path::Path;
 use tempfile::TempDir;
 
 const MPU6050: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../data/mpu6050.json");
-
-fn number(value: &Value) -> f64 {
-    value.as_f64().unwrap_or_else(|| panic!("{value}"))
-}
 
 fn names(value: &Value) -> Vec<&str> {
     let list = value.as_array().unwrap();

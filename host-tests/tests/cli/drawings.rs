@@ -1,9 +1,9 @@
 //! What `plot` draws of the spectrum agrees with the figures of the diagnosis.
 
 use crate::drawing::{
-    coordinate, dots, drawn, elements, frames, labels, labels_below, number, part, simulate,
+    coordinate, dots, drawn, elements, frames, labels, labels_below, part, simulate,
 };
-use program::{ADIS16405, json, refusal};
+use program::{ADIS16405, json, number, refusal};
 use roxmltree::Document;
 use serde_json::Value;
 use std::fs;

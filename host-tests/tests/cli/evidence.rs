@@ -1,7 +1,7 @@
 //! Tests `diagnose` with the evidence beside the curve: whether the record is valid, and whether it
 //! depends on a covariate.
 
-use crate::INVALID;
+use crate::{INVALID, record_over_time::change};
 use allanite::diagnosis::Verdict;
 use allanite_host::verdict::{ADEQUATE, NOT_STATIONARY, brief, sentence};
 use program::{json, measure_without_spectrum, output, refusal, run};
@@ -21,22 +21,6 @@ fn simulate(folder: &Path, effects: &[&str]) {
 
 /// Returns the rate that replaces the given one: `change(index, rate)`.
 type Change<'a> = &'a mut dyn FnMut(usize, f64) -> f64;
-
-/// Rewrites the rates in the first column of the log: `change(index, rate)`.
-fn change(folder: &Path, mut change: impl FnMut(usize, f64) -> f64) {
-    let path = folder.join("log.csv");
-    let text = fs::read_to_string(&path).unwrap();
-    let mut index = 0;
-    let lines = text.lines().map(|line| {
-        let Ok(rate) = line.parse::<f64>() else {
-            return line.to_owned();
-        };
-        index += 1;
-        change(index - 1, rate).to_string()
-    });
-    let changed = lines.collect::<Vec<_>>().join("\n");
-    fs::write(path, changed + "\n").unwrap();
-}
 
 fn list(value: &Value) -> Vec<&str> {
     let list = value.as_array().unwrap();

@@ -4,7 +4,7 @@ use crate::{
     browser::Browser,
     whole_page::{self, explored, settle},
 };
-use program::{ADIS16405, json, output, refusal};
+use program::{ADIS16405, json, number, output, refusal};
 use serde_json::{Value, json};
 use std::{
     fs,
@@ -13,10 +13,6 @@ use std::{
     time::{Duration, Instant},
 };
 use tempfile::TempDir;
-
-fn number(value: &Value) -> f64 {
-    value.as_f64().unwrap_or_else(|| panic!("{value}"))
-}
 
 /// Opens the page and waits for its first answer, which moves what can be clicked.
 fn open(browser: &mut Browser, url: &str) {

@@ -4,8 +4,8 @@ use crate::{
     browser::Browser,
     whole_page::{self, explored},
 };
-use program::{ADIS16405, output};
-use serde_json::{Value, json};
+use program::{ADIS16405, number, output};
+use serde_json::json;
 use std::{
     path::Path,
     thread,
@@ -14,10 +14,6 @@ use std::{
 use tempfile::TempDir;
 
 const SPECTRUM: &str = "#places .place:nth-child(2)";
-
-fn number(value: &Value) -> f64 {
-    value.as_f64().unwrap_or_else(|| panic!("{value}"))
-}
 
 /// Waits until the page shows the answer to its last question, which it was not refused.
 fn settle(browser: &mut Browser) {

@@ -5,7 +5,7 @@ use crate::{
     browser::Browser,
     whole_page::{choose, empty, explored, settle},
 };
-use program::{json, output};
+use program::{json, number, output};
 use serde_json::{Value, json};
 use std::{
     path::Path,
@@ -13,10 +13,6 @@ use std::{
     time::{Duration, Instant},
 };
 use tempfile::TempDir;
-
-fn number(value: &Value) -> f64 {
-    value.as_f64().unwrap_or_else(|| panic!("{value}"))
-}
 
 fn chi2(browser: &mut Browser) -> f64 {
     settle(browser);

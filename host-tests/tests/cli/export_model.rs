@@ -1,6 +1,6 @@
 //! `export` writes the model that the diagnosis finds, and refuses what it cannot explain.
 
-use program::{ADIS16405, json, output, refusal};
+use program::{ADIS16405, json, number, output, refusal};
 use saphyr::{LoadableYamlNode, Yaml};
 use serde_json::Value;
 use std::path::Path;
@@ -36,10 +36,6 @@ fn exported(folder: &Path, more: &[&str]) -> Value {
     let text = output(folder, &[&export[..], more].concat());
     let mut document: Value = serde_json::from_str(&text).unwrap();
     document["axes"][0].take()
-}
-
-fn number(value: &Value) -> f64 {
-    value.as_f64().unwrap_or_else(|| panic!("{value}"))
 }
 
 /// The coefficient of the last model of a diagnosis, in radians and seconds.

@@ -3,7 +3,7 @@
 use crate::INVALID;
 use allanite::diagnosis::Verdict;
 use allanite_host::verdict::sentence;
-use program::{json, output, rows, run};
+use program::{json, number, output, rows, run};
 use serde_json::Value;
 use std::{fs, path::Path};
 use tempfile::TempDir;
@@ -45,10 +45,6 @@ fn errors(folder: &Path, arguments: &[&str]) -> String {
     let output = run(folder, arguments);
     assert!(output.status.success());
     String::from_utf8(output.stderr).unwrap()
-}
-
-fn number(value: &Value) -> f64 {
-    value.as_f64().unwrap_or_else(|| panic!("{value}"))
 }
 
 /// The effects beside the five terms in the last step of a diagnosis.

@@ -2,7 +2,7 @@
 
 use allanite::diagnosis::Verdict;
 use allanite_host::verdict::{ADEQUATE, of_five_terms};
-use program::{json, output, refusal};
+use program::{json, number, output, refusal};
 use serde_json::Value;
 use std::path::Path;
 use tempfile::TempDir;
@@ -27,10 +27,6 @@ fn record(folder: &Path, more: &[&str]) {
 fn diagnosed(folder: &Path, more: &[&str]) -> Value {
     let mut document = json(folder, &[&["diagnose", "log.csv"], more].concat());
     document["axes"][0].take()
-}
-
-fn number(value: &Value) -> f64 {
-    value.as_f64().unwrap_or_else(|| panic!("{value}"))
 }
 
 fn assert_near(value: &Value, truth: f64, tolerance: f64) {

@@ -1,6 +1,6 @@
 //! The plot of a record agrees with its figures and its text.
 
-use program::{ADIS16405, json, output, refusal, rows};
+use program::{ADIS16405, json, number, output, refusal, rows};
 use resvg::tiny_skia::Pixmap;
 use roxmltree::Document;
 use serde_json::Value;
@@ -13,10 +13,6 @@ use tempfile::TempDir;
 
 /// The number of columns to the left of the panels.
 const MARGIN: usize = 11;
-
-fn number(value: &Value) -> f64 {
-    value.as_f64().unwrap_or_else(|| panic!("{value}"))
-}
 
 /// A panel of a plot: its labelled rows, and the cells of its marks from left to right.
 #[derive(Debug)]

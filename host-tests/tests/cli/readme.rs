@@ -175,100 +175,6 @@ fn pictures_of_the_manual_are_those_that_plot_draws() {
     }
 }
 
-/// All pages: the project's, the manual's, and those of the studies.
-fn pages() -> Vec<String> {
-    let mut pages = vec![
-        README.to_owned(),
-        PUBLISHED.to_owned(),
-        "host-tests/README.md".to_owned(),
-        "host-tests/CONTRIBUTING.md".to_owned(),
-        "src/python/README.md".to_owned(),
-    ];
-    for folder in ["host-tests/doc", "host-tests/doc/studies"] {
-        let files = fs::read_dir(Path::new(ROOT).join(folder)).expect("a folder");
-        let names = files.map(|file| file.expect("a file").file_name());
-        let names = names.map(|name| name.to_string_lossy().into_owned());
-        let names = names.filter(|name| name.ends_with(".md"));
-        pages.extend(names.map(|name| format!("{folder}/{name}")));
-    }
-    pages
-}
-
-/// What a page links to or draws: a file, and a place in it or nothing.
-fn links(page: &str) -> impl Iterator<Item = (&str, &str)> {
-    let targets = page.split("](").skip(1);
-    let targets = targets.filter_map(|rest| rest.split(')').next());
-    let targets = targets.filter(|target| !target.contains("://"));
-    targets.map(|target| target.split_once('#').unwrap_or((target, "")))
-}
-
-/// The names by which links find the headings of a page.
-fn places(page: &str) -> impl Iterator<Item = String> {
-    let headings = page.lines().filter(|line| line.starts_with('#'));
-    headings.map(|line| {
-        let heading = line.trim_start_matches('#').trim().to_lowercase();
-        let kept = heading
-            .chars()
-            .filter(|c| c.is_alphanumeric() || " -_".contains(*c));
-        kept.map(|c| if c == ' ' { '-' } else { c }).collect()
-    })
-}
-
-#[test]
-fn what_is_linked_exists() {
-    let pages = pages();
-    assert!(pages.len() > 25, "{pages:?}");
-    for path in &pages {
-        let page = text(path);
-        let folder = Path::new(ROOT).join(path);
-        let folder = folder.parent().expect("a file in a folder");
-        for (file, place) in links(&page) {
-            assert!(
-                folder.join(file).exists(),
-                "{path} links to {file}, which is missing"
-            );
-            if !place.is_empty() && (file.is_empty() || file.ends_with(".md")) {
-                let linked = match file {
-                    "" => page.clone(),
-                    file => fs::read_to_string(folder.join(file)).expect("a page"),
-                };
-                assert!(
-                    places(&linked).any(|heading| heading == place),
-                    "{path} links to {file}#{place}, which is missing"
-                );
-            }
-        }
-    }
-}
-
-/// A registry shows this page apart from any repository, so that no link of its own leads anywhere. What it names is in
-/// the package, and the project's page, whose links reach the repository, is not.
-#[test]
-fn the_published_page_links_nothing_that_is_not_published() {
-    let listed = xtask::firmware::cargo()
-        .args([
-            "package",
-            "--package",
-            "allanite",
-            "--list",
-            "--allow-dirty",
-        ])
-        .output()
-        .expect("cargo");
-    assert!(listed.status.success(), "{listed:?}");
-    let listed = String::from_utf8(listed.stdout).expect("names");
-    let files: Vec<_> = listed.lines().collect();
-    let page = text(PUBLISHED);
-    assert_eq!(links(&page).next(), None);
-    for file in ["LICENSE-APACHE", "LICENSE-MIT"] {
-        assert!(page.contains(file) && files.contains(&file), "{file}");
-    }
-    assert!(
-        files.contains(&PUBLISHED) && !files.contains(&README),
-        "{files:?}"
-    );
-}
-
 /// The example of a firmware is compiled where it is published; the project's page shows the same.
 #[test]
 fn both_pages_show_the_same_example() {
@@ -278,30 +184,6 @@ fn both_pages_show_the_same_example() {
         code.split("```").next().expect("its end").to_owned()
     };
     assert_eq!(example(README), example(PUBLISHED));
-}
-
-#[test]
-fn every_page_is_linked() {
-    let pages = pages();
-    let linked: Vec<_> = pages
-        .iter()
-        .flat_map(|path| {
-            let page = text(path);
-            let folder = Path::new(ROOT).join(path);
-            let folder = folder.parent().expect("a file in a folder").to_owned();
-            let files: Vec<_> = links(&page).map(|(file, _)| folder.join(file)).collect();
-            files
-        })
-        .filter_map(|file| file.canonicalize().ok())
-        .collect();
-    let entrances = [README, PUBLISHED];
-    for path in pages
-        .iter()
-        .filter(|path| !entrances.contains(&path.as_str()))
-    {
-        let file = Path::new(ROOT).join(path).canonicalize().expect("a page");
-        assert!(linked.contains(&file), "no page links to {path}");
-    }
 }
 
 #[test]

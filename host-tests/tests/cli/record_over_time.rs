@@ -2,16 +2,16 @@
 
 use crate::INVALID;
 use crate::drawing::{
-    coordinate, dots, drawn, elements, frames, labels, labels_below, number, part, simulate,
+    coordinate, dots, drawn, elements, frames, labels, labels_below, part, simulate,
 };
 use allanite_host::verdict::{INVALID_CURVE, on_badge};
-use program::{json, output};
+use program::{json, number, output};
 use roxmltree::Document;
 use std::{fs, path::Path};
 use tempfile::TempDir;
 
 /// Changes the rates of a log: the first column of every row after the header.
-fn change(folder: &Path, mut disturb: impl FnMut(usize, f64) -> f64) {
+pub(crate) fn change(folder: &Path, mut disturb: impl FnMut(usize, f64) -> f64) {
     let path = folder.join("log.csv");
     let text = fs::read_to_string(&path).unwrap();
     let mut row = 0;
@@ -21,15 +21,11 @@ fn change(folder: &Path, mut disturb: impl FnMut(usize, f64) -> f64) {
             return line.to_owned();
         };
         row += 1;
-        let rest = if rest.is_empty() {
-            String::new()
-        } else {
-            format!(",{rest}")
-        };
-        format!("{}{rest}", disturb(row - 1, rate))
+        let comma = if rest.is_empty() { "" } else { "," };
+        format!("{}{comma}{rest}", disturb(row - 1, rate))
     });
     let lines: Vec<String> = lines.collect();
-    fs::write(path, lines.join("\n")).unwrap();
+    fs::write(path, lines.join("\n") + "\n").unwrap();
 }
 
 /// The numbers in a column of a log.

@@ -3,9 +3,9 @@
 
 use crate::{
     browser::Browser,
-    page::{embedded, number, opened, reported, simulate, steps},
+    page::{embedded, opened, reported, simulate, steps},
 };
-use program::{ADIS16405, measure_without_spectrum, output, refusal, rows};
+use program::{ADIS16405, measure_without_spectrum, number, output, refusal, rows};
 use serde_json::Value;
 use std::fs;
 use tempfile::TempDir;

@@ -2,9 +2,9 @@
 
 use crate::{
     browser::Browser,
-    page::{embedded, number, opened, reported, simulate, steps},
+    page::{embedded, opened, reported, simulate, steps},
 };
-use program::ADIS16405;
+use program::{ADIS16405, number};
 use serde_json::Value;
 use std::fs;
 use tempfile::TempDir;

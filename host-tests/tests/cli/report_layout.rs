@@ -1,7 +1,7 @@
 //! A page of `report` shows its finding on the first screen, fits on paper, and can be used by everybody.
 
-use crate::page::{embedded, number, opened, reported, simulate};
-use program::ADIS16405;
+use crate::page::{embedded, opened, reported, simulate};
+use program::{ADIS16405, number};
 use serde_json::{Value, json};
 use std::fs;
 use tempfile::TempDir;

@@ -3,9 +3,9 @@
 
 use crate::{
     browser::Browser,
-    page::{embedded, number, opened, reported},
+    page::{embedded, opened, reported},
 };
-use program::ADIS16405;
+use program::{ADIS16405, number};
 use serde_json::Value;
 use std::{
     fs, thread,

@@ -2,14 +2,14 @@
 
 use crate::{
     browser::Browser,
-    page::{embedded, number},
+    page::embedded,
     whole_page::{explored, settle},
 };
 use allanite::diagnosis::Verdict;
 use allanite_host::verdict::{
     NOT_STATIONARY_IN_WORDS, concluded, of_five_terms, on_badge, sentence,
 };
-use program::{ADIS16405, json, output, refusal};
+use program::{ADIS16405, json, number, output, refusal};
 use serde_json::Value;
 use std::{fs, path::Path};
 use tempfile::TempDir;

@@ -2,12 +2,7 @@
 
 use program::output;
 use roxmltree::{Document, Node};
-use serde_json::Value;
 use std::{fs, path::Path};
-
-pub(crate) fn number(value: &Value) -> f64 {
-    value.as_f64().unwrap_or_else(|| panic!("{value}"))
-}
 
 pub(crate) fn coordinate(node: &Node, name: &str) -> f64 {
     node.attribute(name).unwrap().parse().unwrap()

@@ -35,10 +35,6 @@ pub(crate) fn steps(axis: &Value) -> &[Value] {
     axis["steps"].as_array().unwrap()
 }
 
-pub(crate) fn number(value: &Value) -> f64 {
-    value.as_f64().unwrap_or_else(|| panic!("{value}"))
-}
-
 /// The data in the page that the script reads.
 pub(crate) fn embedded(page: &str) -> Value {
     let (_, rest) = page.split_once("id=\"data\">").unwrap();

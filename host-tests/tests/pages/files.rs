@@ -10,7 +10,7 @@ const TOP: [&str; 3] = ["src", "host-tests", ".cargo"];
 const ALONE: [&str; 2] = [".rs", ".md"];
 
 /// The folder of a page, from the root.
-fn folder(page: &Page) -> &Path {
+pub(crate) fn folder(page: &Page) -> &Path {
     Path::new(&page.path).parent().expect("a file in a folder")
 }
 
@@ -54,30 +54,6 @@ fn files_that_pages_name_exist() {
         }
     }
     assert!(checked > 60, "{checked} paths");
-    assert!(missing.is_empty(), "not there:\n{}", missing.join("\n"));
-}
-
-#[test]
-fn files_that_pages_link_exist() {
-    let (mut checked, mut missing) = (0, Vec::new());
-    for page in pages() {
-        let prose = page.prose();
-        let targets = prose.split("](").skip(1);
-        let targets = targets.filter_map(|rest| rest.split(')').next());
-        for target in targets.filter(|target| !target.contains("://")) {
-            let file = target.split('#').next().expect("a part");
-            // A link of the crate's page may lead to an item.
-            let is_item = file.contains("::") || page.path.ends_with(".rs");
-            if file.is_empty() || is_item {
-                continue;
-            }
-            checked += 1;
-            if !Path::new(ROOT).join(folder(&page)).join(file).exists() {
-                missing.push(format!("{}: {target}", page.path));
-            }
-        }
-    }
-    assert!(checked > 150, "{checked} links");
     assert!(missing.is_empty(), "not there:\n{}", missing.join("\n"));
 }
 

@@ -8,6 +8,7 @@ mod counts;
 mod files;
 #[cfg(unix)]
 mod hook;
+mod links;
 mod page;
 mod voice;
 mod words;

@@ -80,6 +80,14 @@ pub fn json(folder: &Path, arguments: &[&str]) -> Value {
     serde_json::from_str(&output(folder, &[arguments, &["--json"]].concat())).expect("JSON")
 }
 
+/// A number of a JSON document.
+///
+/// # Panics
+/// When it is something else.
+pub fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or_else(|| panic!("{value}"))
+}
+
 /// The line on standard error of a command that refuses its input.
 ///
 /// # Panics

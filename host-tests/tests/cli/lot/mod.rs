@@ -12,7 +12,7 @@ use devices::{
     BEFORE, DEVICES, Lot, certificate, encoded, has_become_noisy, has_begun_to_walk, has_line,
     is_noisy, is_unstable, lot, name, truth,
 };
-use program::{command, json, refusal, rows};
+use program::{command, json, number, refusal, rows};
 use rayon::prelude::*;
 use serde_json::Value;
 use std::{collections::BTreeSet, fs};
@@ -41,10 +41,6 @@ fn named(devices: impl Iterator<Item = u64>, is: impl Fn(u64) -> bool) -> BTreeS
 fn count(value: &Value) -> usize {
     let count = value.as_u64().unwrap_or_else(|| panic!("{value}"));
     count as usize
-}
-
-fn number(value: &Value) -> f64 {
-    value.as_f64().unwrap_or_else(|| panic!("{value}"))
 }
 
 fn row<'a>(lot: &'a Value, effect: &str) -> &'a Value {

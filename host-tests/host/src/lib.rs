@@ -14,6 +14,7 @@ pub mod equivalent;
 pub mod event_json;
 pub mod fit;
 pub mod interface;
+pub mod judgement;
 pub mod known_filter;
 pub mod limit;
 pub mod lot;

@@ -71,13 +71,20 @@ pub fn in_comment(fit: &Fit) -> String {
     }
 }
 
-/// The verdict of a fit below its table, of the five terms and what is before them.
-pub fn of_five_terms(behind: &str, adequate: Option<bool>) -> String {
+/// The verdict on a record below the table of a fit, of the five terms and what is before them. `missing` names the effects that they
+/// lack; it is empty if none was found.
+pub fn of_five_terms(behind: &str, adequate: Option<bool>, missing: &str) -> String {
     match adequate {
         Some(true) => format!("The five-term model{behind} is {ADEQUATE} for this record."),
+        Some(false) if missing.is_empty() => format!(
+            "The five-term model{behind} is {}: the record has another effect, which \
+             distorts the coefficients. `compare` shows where, and `diagnose` looks for it.",
+            word(adequate)
+        ),
         Some(false) => format!(
-            "The five-term model{behind} is {INADEQUATE}: {ANOTHER_EFFECT}, which \
-             distorts the coefficients. `compare` shows where, and `diagnose` looks for it."
+            "The five-term model{behind} is {}: it lacks {missing}, which distorts the \
+             coefficients. `diagnose` fits them together.",
+            word(adequate)
         ),
         None => format!(
             "There are too few octaves to judge the five-term model{behind}: record longer."
@@ -85,14 +92,25 @@ pub fn of_five_terms(behind: &str, adequate: Option<bool>) -> String {
     }
 }
 
+/// The verdict on a record in which this happened, below the table of a fit.
+pub fn of_a_mixture(event: &str) -> String {
+    format!(
+        "The record is {NOT_STATIONARY_IN_WORDS}: {event}. Its coefficients are those of a mixture: leave out the \
+         disturbed part, or record again."
+    )
+}
+
 /// That a record is too short, in a sentence.
 pub fn too_few(model: &str) -> String {
     format!("there are too few octaves to judge the {model}")
 }
 
-/// A limit that is not decided, because the model explains too little.
-pub const UNDECIDED: &str =
-    "not decided, because the five terms do not explain the record: see `diagnose`";
+/// A limit that is not decided, because no model explains the record.
+pub const UNDECIDED: &str = "not decided, because no model explains the record: see `diagnose`";
+
+/// A limit that is not decided, because something happened during the record.
+pub const UNDECIDED_IN_MIXTURE: &str =
+    "not decided, because the record is not stationary: see `diagnose`";
 
 /// What is said of a curve that is not one of a gyro at rest.
 pub const INVALID_CURVE: &str = "the curve is not valid";

@@ -126,10 +126,11 @@ fn every_command_that_fits_a_model_takes_a_filter() {
         fitted.contains("behind a low pass (cutoff 8 Hz, time constant 0.01989 s, poles 2)"),
         "{fitted}"
     );
-    let said = of_five_terms(" behind the low pass", Some(true));
+    let said = of_five_terms(" behind the low pass", Some(true), "");
     assert!(fitted.contains(&said), "{fitted}");
     let plain = output(folder.path(), &["fit", "log.csv"]);
-    assert!(plain.contains(&of_five_terms("", Some(false))), "{plain}");
+    let said = of_five_terms("", Some(false), "a low pass");
+    assert!(plain.contains(&said), "{plain}");
     let compared = with(&["compare", "log.csv"]);
     assert!(
         compared.contains("with low pass: cutoff 8 Hz"),

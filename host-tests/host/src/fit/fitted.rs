@@ -3,7 +3,9 @@
 use super::judged::Judged;
 use crate::{
     curve_file::AxisCurve,
+    diagnose::diagnosed::Diagnosed,
     disturbance::invalid,
+    judgement::Judgement,
     limit::LimitArgument,
     record, rounding,
     tried::{self, TriedCovariate},
@@ -73,6 +75,8 @@ pub struct Fitted {
     pub tried: Vec<TriedCovariate>,
     /// What the limits that were asked for say.
     pub limits: Vec<Judged>,
+    /// The verdict of the diagnosis; `None` if none was made.
+    pub judgement: Option<Judgement>,
 }
 
 impl Fitted {
@@ -106,6 +110,7 @@ impl Fitted {
                 invalid: None,
                 tried: Vec::new(),
                 limits: Vec::new(),
+                judgement: None,
             }),
             Err(error) => Err(record::library_failure(path, &axis.axis, error)),
         }
@@ -136,6 +141,17 @@ impl Fitted {
             tried: tried.map_err(|error| record::library_failure(path, name, error))?,
             ..fitted
         })
+    }
+
+    /// Whether the model explains a valid record, as a diagnosis decides, or the fit alone if none was made. `None` if the
+    /// record does not tell, or the method has no errors.
+    pub fn is_adequate(&self) -> Option<bool> {
+        match (&self.judgement, self.method) {
+            _ if !self.is_valid() => Some(false),
+            (Some(judgement), MethodName::Covariance) => judgement.adequate,
+            (None, MethodName::Covariance) => self.fit.is_adequate(),
+            _ => None,
+        }
     }
 
     /// Whether the curve is valid: the samples are, and rounding does not hide their noise.
@@ -187,11 +203,17 @@ pub fn fitted(
     axes: Vec<(AxisCurve, Evidence)>,
     settings: &Settings<'_>,
 ) -> Result<Vec<Fitted>, Failure> {
-    let fit = |(axis, evidence)| {
+    let fit = |(axis, evidence): (AxisCurve, Evidence)| {
         let (model, method) = (settings.model, settings.method);
+        let diagnosed = Diagnosed::new(axis.clone(), evidence.clone(), model, None);
+        let diagnosed =
+            diagnosed.map_err(|error| record::library_failure(path, &axis.axis, error))?;
+        let judgement = Judgement::of(&diagnosed);
         let mut fitted = Fitted::with_evidence(path, axis, model, method, evidence)?;
-        let fit = (&fitted.fit, fitted.is_valid());
-        fitted.limits = Judged::all(fit, fitted.axis.unit, settings.limits)?;
+        let (fit, is_valid) = (&fitted.fit, fitted.is_valid());
+        let unit = fitted.axis.unit;
+        fitted.limits = Judged::all(fit, &judgement, is_valid, unit, settings.limits)?;
+        fitted.judgement = Some(judgement);
         Ok(fitted)
     };
     axes.into_iter().map(fit).collect()

@@ -1,9 +1,6 @@
 //! The JSON document of a fit.
 
-use super::{
-    fitted::{Fitted, MethodName},
-    judged::Judged,
-};
+use super::{fitted::Fitted, judged::Judged};
 use crate::{
     known_filter::{Shape, known_filter},
     rounding,
@@ -42,6 +39,10 @@ pub struct Axis<'a> {
     pub p_value: Option<f64>,
     /// Whether the five terms explain a valid curve; `null` if the record does not tell, or the method does not.
     pub adequate: Option<bool>,
+    /// The verdict of the diagnosis.
+    verdict: Option<&'static str>,
+    /// The effects and the covariate that the five terms lack.
+    missing: &'a [&'static str],
     /// The factor by which intervals and bounds are widened.
     birge_ratio: f64,
     /// Why the curve is not valid; `null` if it is, or if the input is a curve file.
@@ -106,6 +107,7 @@ fn axis(fitted: &Fitted) -> Axis<'_> {
         invalid,
         tried,
         limits,
+        judgement,
     } = fitted;
     let finite = |value: f64| value.is_finite().then_some(value);
     Axis {
@@ -132,11 +134,11 @@ fn axis(fitted: &Fitted) -> Axis<'_> {
         chi2: finite(fit.chi_squared),
         dof: finite(fit.chi_squared).map(|_| fit.degrees_of_freedom),
         p_value: finite(fit.p_value),
-        adequate: match *method {
-            _ if !fitted.is_valid() => Some(false),
-            MethodName::Covariance => fit.is_adequate(),
-            _ => None,
-        },
+        adequate: fitted.is_adequate(),
+        verdict: judgement.as_ref().map(|judgement| judgement.name),
+        missing: judgement
+            .as_ref()
+            .map_or(&[], |judgement| &judgement.missing),
         birge_ratio: fit.birge_ratio,
         invalid: invalid.as_deref(),
         covariates: tried.iter().map(TriedCovariate::document).collect(),
@@ -145,6 +147,11 @@ fn axis(fitted: &Fitted) -> Axis<'_> {
             .iter()
             .cloned()
             .chain(rounding::note(axis, fit).filter(|_| invalid.is_none()))
+            .chain(
+                judgement
+                    .iter()
+                    .filter_map(|judgement| judgement.event.clone()),
+            )
             .chain(fitted.covariate_notes())
             .collect(),
     }

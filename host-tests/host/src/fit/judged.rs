@@ -1,10 +1,12 @@
 //! A coefficient beside its limit, for a station that measures once and decides.
 
 use crate::{
+    judgement::Judgement,
     limit::LimitArgument,
     number::number,
     units,
-    verdict::{UNDECIDED, UNDECIDED_INVALID},
+    verdict::{UNDECIDED, UNDECIDED_IN_MIXTURE, UNDECIDED_INVALID},
+    words,
 };
 use allanite::fit::Fit;
 use allanite_log::{failure::Failure, unit::Unit};
@@ -20,8 +22,10 @@ enum Conformity {
     Pass,
     /// The interval contains the limit, or the coefficient is not observable in this record.
     GuardBand,
-    /// The five terms do not explain the curve, so that the interval says nothing about a limit.
+    /// No model explains the record, so that no interval says anything about a limit.
     Misfit,
+    /// Something happened during the record, and its coefficients are those of a mixture.
+    NotStationary,
     /// The curve is not valid.
     Invalid,
     /// The interval lies above the limit.
@@ -34,6 +38,7 @@ impl Conformity {
             Self::Pass => "pass",
             Self::GuardBand => "guard band: a longer record may decide",
             Self::Misfit => UNDECIDED,
+            Self::NotStationary => UNDECIDED_IN_MIXTURE,
             Self::Invalid => UNDECIDED_INVALID,
             Self::Fail => "fail",
         }
@@ -48,15 +53,21 @@ pub struct Judged {
     most: f64,
     unit: String,
     verdict: Conformity,
+    /// The effects in whose presence the coefficient was compared, which the five terms lack.
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    beside: Vec<&'static str>,
 }
 
 impl Judged {
-    /// The fit of an axis, and whether its curve is valid, beside all limits.
+    /// What all limits say of an axis: of the coefficients of the model that explains the record, which are those of the five terms
+    /// if these explain it.
     ///
     /// # Errors
     /// When a limit is of an effect that is not fitted, or in a unit that its coefficient does not have.
     pub fn all(
-        (fit, is_valid): (&Fit, bool),
+        fit: &Fit,
+        judgement: &Judgement,
+        is_valid: bool,
         unit: Unit,
         limits: &[LimitArgument],
     ) -> Result<Vec<Self>, Failure> {
@@ -65,20 +76,28 @@ impl Judged {
             let found = coefficients.find(|found| found.name == limit.name());
             let found = found.ok_or_else(|| limit.of_another_model())?;
             let most = limit.of_unit(unit)?.value;
-            let (lower, upper) = (found.lower, found.upper);
-            let verdict = match fit.is_adequate() {
+            let verdict = match judgement.coefficient(found.name) {
                 _ if !is_valid => Conformity::Invalid,
-                Some(false) => Conformity::Misfit,
-                _ if lower > most => Conformity::Fail,
-                _ if upper <= most => Conformity::Pass,
-                _ => Conformity::GuardBand,
+                _ if judgement.event.is_some() => Conformity::NotStationary,
+                None => Conformity::Misfit,
+                Some(explained) if explained.lower > most => Conformity::Fail,
+                Some(explained) if explained.upper <= most => Conformity::Pass,
+                Some(_) => Conformity::GuardBand,
             };
+            let is_decided = !matches!(
+                verdict,
+                Conformity::Invalid | Conformity::NotStationary | Conformity::Misfit
+            );
             Ok(Self {
                 effect: found.name,
                 symbol: found.symbol,
                 most,
                 unit: units::unit(unit, found.half_seconds),
                 verdict,
+                beside: match is_decided {
+                    true => judgement.missing.clone(),
+                    false => Vec::new(),
+                },
             })
         });
         judged.collect()
@@ -87,7 +106,16 @@ impl Judged {
     /// The limit and the verdict in one line.
     pub fn words(&self) -> String {
         let (symbol, most, unit) = (self.symbol, number(self.most), &self.unit);
-        format!("limit {symbol} ≤ {most} {unit}: {}", self.verdict.words())
+        let verdict = self.verdict.words();
+        let line = format!("limit {symbol} ≤ {most} {unit}: {verdict}");
+        if self.beside.is_empty() {
+            return line;
+        }
+        let names = self.beside.iter().map(|name| words::in_sentence(name));
+        format!(
+            "{line} (in the model with {})",
+            words::list_of(names.collect())
+        )
     }
 }
 

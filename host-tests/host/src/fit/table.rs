@@ -2,6 +2,7 @@
 
 use super::fitted::{Fitted, MethodName};
 use crate::{
+    judgement::Judgement,
     known_filter::{described, known_filter},
     number::{duration, number, probability},
     rounding, units,
@@ -191,17 +192,25 @@ fn verdict(fitted: &Fitted) -> Vec<String> {
             number(100.0 * fit.shrinkage)
         );
     }
-    let judgement = if !fit.p_value.is_finite() {
-        of_five_terms(&behind, None)
+    let judgement = if let Some(judgement) = covariance_judgement(fitted) {
+        judgement.sentence(&behind)
+    } else if !fit.p_value.is_finite() {
+        of_five_terms(&behind, None, "")
     } else if *method == MethodName::RelativeAccuracy {
         "This method treats octaves as independent: judge the model with --method covariance."
             .into()
     } else {
-        of_five_terms(&behind, Some(fit.is_adequate() == Some(true)))
+        of_five_terms(&behind, Some(fit.is_adequate() == Some(true)), "")
     };
     [first, judgement]
         .into_iter()
         .chain(words::widened(fit))
         .chain(words::unseen_flicker(fit, fitted.axis.rate_hz))
         .collect()
+}
+
+/// The verdict of the diagnosis beside a fit whose errors are those of the diagnosis.
+fn covariance_judgement(fitted: &Fitted) -> Option<&Judgement> {
+    let judgement = fitted.judgement.as_ref();
+    judgement.filter(|_| fitted.method == MethodName::Covariance)
 }

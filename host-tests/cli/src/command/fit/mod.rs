@@ -75,7 +75,7 @@ pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), 
     let worst = Worst::default();
     let work = |path: &Path| {
         let (about_log, covariates) = (&arguments.about_log, &arguments.covariates);
-        let axes = record::read_for_fit(path, about_log, covariates)?;
+        let axes = record::read_with_evidence(path, about_log, covariates)?;
         let settings = Settings {
             model: &model,
             method: arguments.method,

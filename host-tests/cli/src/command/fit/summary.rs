@@ -1,7 +1,6 @@
 //! The coefficients of many files in one table of 80 columns, with one row for each axis below its file's name.
 
 use crate::command::input::many::shown;
-use allanite::fit::Fit;
 use allanite_host::{
     fit::{fitted::Fitted, table::customary},
     number::probability,
@@ -80,15 +79,15 @@ fn row(fitted: &Fitted) -> Vec<String> {
         "–".into()
     });
     row.push(if fitted.is_valid() {
-        adequate(fit).into()
+        adequate(fitted.is_adequate()).into()
     } else {
         "not valid".into()
     });
     row
 }
 
-fn adequate(fit: &Fit) -> &'static str {
-    match fit.is_adequate() {
+fn adequate(adequate: Option<bool>) -> &'static str {
+    match adequate {
         Some(true) => "yes",
         Some(false) => "no",
         None => "–",

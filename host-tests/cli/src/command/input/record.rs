@@ -157,15 +157,6 @@ pub(crate) fn read_for_page(
     read_beside(path, arguments, covariates, log::read_for_page)
 }
 
-/// As [`read_with_evidence`], without the kurtosis of a log, which takes time and only a diagnosis needs.
-pub(crate) fn read_for_fit(
-    path: &Path,
-    arguments: &LogArguments,
-    covariates: &CovariateArguments,
-) -> Result<Vec<(AxisCurve, Evidence)>, Failure> {
-    read_beside(path, arguments, covariates, log::read_for_fit)
-}
-
 fn read_beside(
     path: &Path,
     arguments: &LogArguments,

@@ -1,0 +1,68 @@
+//! What a record is, decided once: every command that says whether a model explains a record asks here.
+
+use crate::{diagnose::diagnosed::Diagnosed, verdict, words};
+use allanite::{Coefficient, Model, diagnosis::Verdict, effect::Effect, fit::Fit};
+
+/// The verdict of a diagnosis on an axis, as a command says it that does not show the diagnosis.
+#[derive(Clone, Debug)]
+pub struct Judgement {
+    /// The verdict, as it is written in files.
+    pub name: &'static str,
+    /// Whether the model that was asked about explains the record. `None` if the record is too short to tell.
+    pub adequate: Option<bool>,
+    /// The names of the effects and the covariate that the model lacks.
+    pub missing: Vec<&'static str>,
+    /// What happened during the record, in a sentence.
+    pub event: Option<String>,
+    /// The model that explains the record, and its fit; `None` if no model does.
+    explained: Option<(Model, Fit)>,
+}
+
+impl Judgement {
+    /// The verdict of a diagnosis.
+    pub fn of(diagnosed: &Diagnosed) -> Self {
+        let is_disturbed = diagnosed.stationarity.is_disturbed();
+        let event = diagnosed.stationarity.strongest(diagnosed.axis.unit);
+        let adequate = match diagnosed.verdict {
+            _ if is_disturbed => Some(false),
+            Verdict::Adequate => Some(true),
+            Verdict::TooShort => None,
+            _ => Some(false),
+        };
+        let explains = match diagnosed.verdict {
+            _ if is_disturbed => false,
+            Verdict::Adequate | Verdict::Improved | Verdict::TooShort => true,
+            _ => false,
+        };
+        let last = diagnosed.steps.last().filter(|_| explains);
+        Self {
+            name: diagnosed.verdict_name(),
+            adequate,
+            missing: diagnosed.missing().collect(),
+            event: event.filter(|_| is_disturbed),
+            explained: last.map(|last| (last.model.clone(), last.fit.clone())),
+        }
+    }
+
+    /// The coefficient of an effect in the model that explains the record. A filter stands for the white noise that it
+    /// replaces. `None` if no model explains the record, or it has no such effect.
+    pub fn coefficient(&self, effect: &str) -> Option<&Coefficient> {
+        let (model, fit) = self.explained.as_ref()?;
+        let replaces = |effect: &'static dyn Effect, name: &str| {
+            effect.replaces().is_some_and(|other| other.name() == name)
+        };
+        let mut terms = model.terms().iter();
+        let at =
+            terms.position(|term| term.effect.name() == effect || replaces(term.effect, effect))?;
+        fit.coefficients.get(at)
+    }
+
+    /// The model that was asked about, in a sentence below its table. `behind` names the filter that it has.
+    pub fn sentence(&self, behind: &str) -> String {
+        if let Some(event) = &self.event {
+            return verdict::of_a_mixture(event);
+        }
+        let missing = self.missing.iter().map(|name| words::in_sentence(name));
+        verdict::of_five_terms(behind, self.adequate, &words::list_of(missing.collect()))
+    }
+}

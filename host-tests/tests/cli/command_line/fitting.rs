@@ -1,6 +1,7 @@
 //! Fits logs and curves to coefficients on the command line.
 
 use super::{Document, fit, folder};
+use allanite::diagnosis::Verdict;
 use program::{output, refusal};
 use std::fs;
 use tempfile::TempDir;
@@ -20,6 +21,9 @@ fn fit_prints_the_documented_json() {
         assert_eq!(axis.method, "covariance");
         assert_eq!(axis.adequate, axis.p_value.map(|p| p >= 0.01));
         assert!(axis.adequate.is_some());
+        let is_adequate = axis.verdict.as_deref() == Some(Verdict::Adequate.name());
+        assert_eq!(axis.adequate, Some(is_adequate));
+        assert!(axis.missing.is_empty());
         assert!(axis.birge_ratio >= 1.0 && axis.notes.is_empty());
         assert!(axis.invalid.is_none() && axis.covariates.is_empty());
         assert_eq!(axis.octaves[0].differences, 19_999);

@@ -51,6 +51,8 @@ struct Axis {
     dof: Option<u32>,
     p_value: Option<f64>,
     adequate: Option<bool>,
+    verdict: Option<String>,
+    missing: Vec<String>,
     birge_ratio: f64,
     invalid: Option<String>,
     covariates: Vec<serde_json::Value>,

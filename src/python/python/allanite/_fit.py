@@ -38,7 +38,11 @@ class AxisFit:
     chi2, dof, p_value
         χ² of octaves and bins, its degrees of freedom, and the probability of a larger one; ``None`` if the method has none.
     adequate : bool or None
-        Whether the five terms explain a valid curve; ``None`` if the record does not tell.
+        Whether the five terms explain a valid curve and a diagnosis finds nothing else; ``None`` if the record does not tell.
+    verdict : str or None
+        The verdict of the diagnosis, as :class:`AxisDiagnosis` has it.
+    missing : tuple of str
+        The effects and the covariate that the five terms lack.
     birge_ratio : float
         The factor by which the intervals are widened: √(χ²/degrees of freedom) of a model that is not adequate.
     invalid : str or None
@@ -55,6 +59,8 @@ class AxisFit:
     dof: int | None
     p_value: float | None
     adequate: bool | None
+    verdict: str | None
+    missing: tuple[str, ...]
     birge_ratio: float | None
     invalid: str | None
     covariates: tuple[Covariate, ...]

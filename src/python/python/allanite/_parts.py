@@ -91,14 +91,15 @@ class Covariate:
 
 @dataclass(frozen=True)
 class Limit:
-    """A coefficient beside its limit ``most``, in ``unit``; the verdict is ``pass``, ``guard_band``, ``misfit``, ``invalid`` or
-    ``fail``."""
+    """A coefficient beside its limit ``most``, in ``unit``; the verdict is ``pass``, ``guard_band``, ``misfit``,
+    ``not_stationary``, ``invalid`` or ``fail``. ``beside`` names the effects in whose presence it was compared."""
 
     effect: str
     symbol: str
     most: float
     unit: str
     verdict: str
+    beside: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -36,6 +36,8 @@ type Steps = Vec<(u8, u8, f32), MAX_SHAPE>;
 pub(super) struct Fitted {
     pub(super) model: Model,
     pub(super) squares: Vector,
+    /// χ² at the polished shapes; infinite before.
+    pub(super) chi_squared: Real,
 }
 
 impl Fitted {
@@ -82,13 +84,14 @@ pub(super) fn polished<const K: usize, const B: usize>(
     let mut work = Work::<K, B>::NEW;
     work.solve(observed, &model, Start::Independent, granted, pause)?;
     let (squares, tolerance) = (work.solver.squares, work.solver.weights.tolerance);
-    polish(
-        observed,
-        Fitted { model, squares },
-        tolerance,
-        &mut work,
-        pause,
-    )
+    let fitted = Fitted {
+        model,
+        squares,
+        chi_squared: Real::INFINITY,
+    };
+    let mut polished = polish(observed, fitted, tolerance, &mut work, pause)?;
+    polished.chi_squared = work.solver.chi_squared;
+    Ok(polished)
 }
 
 /// Polishes the shapes of a model. Returns it with the squares at which its covariance was taken, and leaves its solution, with

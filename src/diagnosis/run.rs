@@ -194,7 +194,7 @@ impl<'a, const K: usize, const B: usize> Diagnosis<'a, K, B> {
             }
             Next::Searching => {
                 self.search(pause)?;
-                self.keep_what_lowers_the_error(pause)?;
+                self.keep_what_lowers_the_error();
                 if self.follow_beside_story(pause)? {
                     self.story = None;
                     self.next = Next::JudgingAgain;
@@ -326,20 +326,12 @@ impl<'a, const K: usize, const B: usize> Diagnosis<'a, K, B> {
 
     /// Gives up what was found if the fit with it has no smaller χ² than the fit without. The search compares
     /// likelihoods of octaves and bins that it takes for independent; the fit has their covariance.
-    #[inline(never)]
-    fn keep_what_lowers_the_error(&mut self, pause: &mut Pause<'_>) -> Result<(), Stop> {
-        let Some(story) = self.story.as_ref().filter(|story| !story.is_empty()) else {
-            return Ok(());
+    fn keep_what_lowers_the_error(&mut self) {
+        let without = self.step.fit.chi_squared;
+        self.story = match self.story.take() {
+            Some(story) if story.chi_squared() >= without => Some(Story::NOTHING),
+            story => story,
         };
-        let model = story.whole(&self.model)?;
-        let observed = Observed::new(&self.curve, &self.spectrum);
-        let mut work = Work::<K, B>::NEW;
-        let tolerance = Tolerance::IfNeeded(self.options.tolerance);
-        work.solve(observed, &model, Start::Independent, tolerance, pause)?;
-        if work.solver.chi_squared >= self.step.fit.chi_squared {
-            self.story = Some(Story::NOTHING);
-        }
-        Ok(())
     }
 
     /// Judges the model of the story's next step.

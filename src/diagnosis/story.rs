@@ -42,6 +42,8 @@ pub(super) struct Story {
     told: usize,
     /// What the white noise is in other stories that explain the record as well.
     white: Option<WhiteRange>,
+    /// χ² of the fit with everything that was found.
+    chi_squared: Real,
 }
 
 impl Story {
@@ -50,6 +52,7 @@ impl Story {
         steps: Vec::new(),
         told: 0,
         white: None,
+        chi_squared: 0.0,
     };
 
     pub(super) fn is_empty(&self) -> bool {
@@ -139,7 +142,13 @@ impl Story {
             steps,
             told: 0,
             white: found.white,
+            chi_squared: fitted.chi_squared,
         })
+    }
+
+    /// χ² of the fit with everything that was found; 0 if nothing was.
+    pub(super) fn chi_squared(&self) -> Real {
+        self.chi_squared
     }
 
     /// The model of the present step.

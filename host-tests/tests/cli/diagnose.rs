@@ -347,3 +347,18 @@ fn alternatives_fitted_in_full_agree_with_the_candidates_of_the_search() {
     }
     assert!(compared >= 3 && others >= 1, "{compared}, {others}");
 }
+
+/// A gyro that stood in four positions, each with its own part of the earth's rate: the likelihood of octaves that are taken for
+/// independent falls with Gauss–Markov noise, and χ² of the fit rises from 77 to 148.
+#[test]
+fn what_does_not_lower_the_error_is_not_added() {
+    let four = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../tests/fixtures/four-positions.json"
+    );
+    let document = json(Path::new("."), &["diagnose", four]);
+    let axis = &document["axes"][0];
+    assert_eq!(axis["steps"].as_array().unwrap().len(), 1, "{axis}");
+    assert_eq!(axis["verdict"], Verdict::Adequate.name());
+    assert!(number(&axis["steps"][0]["chi2"]) < 80.0);
+}

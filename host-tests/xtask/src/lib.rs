@@ -41,9 +41,9 @@ pub struct CommandLine {
 enum Task {
     /// Install what this machine lacks to build, run and test everything.
     Setup,
-    /// Set up, then check and test what a change can break, in a quarter of an hour.
+    /// Set up, then check and test what a change can break, in less than half an hour.
     Test {
-        /// Test everything that the project promises, which takes an hour: every core in both precisions, budgets, the package, the
+        /// Test everything that the project promises, which takes hours: every core in both precisions, budgets, the package, the
         /// oldest compiler, injected faults, hostile inputs, fuzzing, Miri, studies and fleets.
         #[arg(long)]
         all: bool,

@@ -1,4 +1,4 @@
-//! Checks a change: in a quarter of an hour what a change can break, and with `--all` everything that the project promises.
+//! Checks a change: in less than half an hour what a change can break, and with `--all` everything that the project promises.
 //!
 //! Builds take longer than tests, so that each crate is built once: xtask, the tests, the programs and the package for Python share a profile and
 //! a folder, and the images of a precision are built by one command. The table in `host-tests/doc/promises.md` names for each promise

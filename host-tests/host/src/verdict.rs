@@ -95,8 +95,7 @@ pub fn of_five_terms(behind: &str, adequate: Option<bool>, missing: &str) -> Str
 /// The verdict on a record in which this happened, below the table of a fit.
 pub fn of_a_mixture(event: &str) -> String {
     format!(
-        "The record is {NOT_STATIONARY_IN_WORDS}: {event}. Its coefficients are those of a mixture: leave out the \
-         disturbed part, or record again."
+        "The record is {NOT_STATIONARY_IN_WORDS}: {event}. Its coefficients stand for a mixture; `diagnose` shows when it happened."
     )
 }
 

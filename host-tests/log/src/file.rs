@@ -67,11 +67,11 @@ pub fn read_for_page(
     read_parts(path, options, None, Some(watch), progress).map(|(log, _)| log)
 }
 
-/// As [`read_for_fit`], of a log that is a part of a longer record and begins with its sample `first_sample`, together with
-/// what rejoins it with the parts beside it.
+/// As [`read_with_evidence`] without the kurtosis, of a log that is a part of a longer record and begins with its sample
+/// `first_sample`, together with what rejoins it with the parts beside it.
 ///
 /// # Errors
-/// The errors are those of [`read_for_fit`]. A log whose samples have no known numbers in the record is refused, and so is
+/// The errors are those of [`read_with_evidence`]. A log whose samples have no known numbers in the record is refused, and so is
 /// one whose values are no whole numbers.
 pub fn read_part(
     path: &Path,
@@ -87,25 +87,6 @@ pub fn read_part(
         moments: false,
         spectrogram: false,
         first_sample: Some(first_sample),
-    };
-    read_parts(path, options, None, Some(watch), progress).map(|(log, _)| log)
-}
-
-/// As [`read_with_evidence`], without the kurtosis, which takes time and only a diagnosis needs.
-///
-/// # Errors
-/// The errors are those of [`read_with_evidence`].
-pub fn read_for_fit(
-    path: &Path,
-    options: &Options,
-    covariates: &Covariates,
-    progress: &ProgressBar,
-) -> Result<Log, Failure> {
-    let watch = Watched {
-        covariates,
-        moments: false,
-        spectrogram: false,
-        first_sample: None,
     };
     read_parts(path, options, None, Some(watch), progress).map(|(log, _)| log)
 }

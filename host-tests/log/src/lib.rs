@@ -181,7 +181,7 @@ pub use arrays::{Arrays, Column, Fill, Numbers, read_arrays};
 pub use covariate::{CovariateChoice, Covariates};
 pub use cuts::{Cuts, Moment, TimeRange};
 pub use faults::{rate_of, said as repeats_said};
-pub use file::{read, read_for_fit, read_for_page, read_in_two, read_part, read_with_evidence};
+pub use file::{read, read_for_page, read_in_two, read_part, read_with_evidence};
 pub use names::TimeUnit;
 pub use names::is_degrees_column;
 pub use octaves::accumulate;

@@ -150,7 +150,7 @@ fn for_fit(path: &Path, step: f64) -> Result<Vec<f64>> {
         ..log::Options::default()
     };
     let none = Covariates::Chosen(Vec::new());
-    let log = log::read_for_fit(path, &options, &none, &ProgressBar::hidden())?;
+    let log = log::read_with_evidence(path, &options, &none, &ProgressBar::hidden())?;
     ensure!(log.axes.len() == 1, "one axis was written");
     let axis = &log.axes[0];
     let scale = Scale::new(axis.rate_per_count / step, log.rate_hz)?;

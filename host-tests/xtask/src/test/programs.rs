@@ -1,8 +1,8 @@
 //! Builds and runs the tests that run on this host.
 
-use super::lints::SINGLE;
+use super::lints::{SINGLE, linted};
 use crate::{
-    firmware::{Heartbeat, cargo},
+    firmware::Heartbeat,
     python::Native,
     step::{captured, run as command},
 };
@@ -40,7 +40,7 @@ const COMMAND_LINE: &str = "cli";
 pub(crate) fn library() -> Result<()> {
     for features in [&SINGLE[..], &["--all-features"]] {
         command(
-            cargo()
+            linted()
                 .args(["test", "--package", "allanite"])
                 .args(features)
                 .args(["--", "--skip", THOROUGH]),
@@ -73,7 +73,7 @@ pub(crate) fn host(built: &Built, thorough: bool) -> Result<()> {
     if thorough {
         return Ok(());
     }
-    command(cargo().args(["test", "--doc", "--workspace"]).args([
+    command(linted().args(["test", "--doc", "--workspace"]).args([
         "--exclude",
         "allanite",
         "--exclude",
@@ -111,7 +111,7 @@ impl Built {
     /// When something does not build.
     pub(crate) fn new() -> Result<Self> {
         let messages = captured(
-            cargo()
+            linted()
                 .args(["build", "--workspace", "--exclude", "allanite"])
                 .args(["--lib", "--bins", "--tests"])
                 .arg("--message-format=json-render-diagnostics"),

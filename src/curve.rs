@@ -32,11 +32,16 @@ pub struct Span {
 pub struct Scale {
     rate_per_count: Real,
     rate_hz: Real,
+    per_degree: Option<Real>,
 }
+
+/// No gyro has a larger count than this, in deg/s: one of ±4000 deg/s and 16 bits has 0.122. A larger one is of another unit.
+const LARGEST_COUNT: Real = 0.2;
 
 impl Scale {
     /// The scale of a sensor that gives `rate_per_count` rate units per count and is sampled at
-    /// `rate_hz`. The rate unit may be rad/s or deg/s; coefficients come out in the same unit.
+    /// `rate_hz`. Coefficients come out in the same unit. It is taken for deg/s where a count is at most 0.2 of it, and is not
+    /// known otherwise; [`in_unit`](Self::in_unit) says another one.
     ///
     /// # Errors
     /// [`Error::InvalidScale`] and [`Error::InvalidRate`] if the number is not positive and finite.
@@ -51,7 +56,21 @@ impl Scale {
         Ok(Self {
             rate_per_count,
             rate_hz,
+            per_degree: (rate_per_count <= LARGEST_COUNT).then_some(1.0),
         })
+    }
+
+    /// The same scale in another unit: `per_degree` is that of 1 deg/s in rate units, such as π/180 for rad/s; `None` for what is no
+    /// rate, such as an acceleration. Coefficients do not depend on it. How large the noise of a gyro can be does, by which
+    /// [motion](crate::motion) is recognised.
+    #[must_use]
+    pub const fn in_unit(self, per_degree: Option<Real>) -> Self {
+        Self { per_degree, ..self }
+    }
+
+    /// 1 deg/s in rate units; `None` if that is not known.
+    pub const fn per_degree(&self) -> Option<Real> {
+        self.per_degree
     }
 
     /// Rate units per count.

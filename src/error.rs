@@ -1,12 +1,14 @@
 //! What can be wrong with an input.
 
-use crate::numerics::real::Real;
+use crate::{numerics::real::Real, record::integrity::Reason};
 
 /// Why a curve could not be made or fitted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum Error {
+    /// The record is not one of a gyro at rest, or not of what the sensor sent.
+    Invalid(Reason),
     /// The sampling rate is not a positive, finite number of hertz.
     InvalidRate(Real),
     /// The rate per count is not a positive, finite number.
@@ -108,6 +110,7 @@ impl Error {
     /// What to do about it, as the last words of the message. The alternate form `{:#}` leaves them out.
     pub const fn remedy(&self) -> &'static str {
         match self {
+            Self::Invalid(_) => "or fit its curve alone",
             Self::InvalidRate(_) | Self::InvalidScale(_) => "pass a positive, finite number",
             Self::InvalidPoint { .. } => {
                 "give ascending powers of two up to 2^29, each with differences and a finite variance that is not negative"
@@ -140,6 +143,7 @@ impl Error {
 impl core::fmt::Display for Error {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
+            Self::Invalid(reason) => write!(f, "the record is not valid: {reason}"),
             Self::InvalidRate(rate) => write!(f, "a sampling rate of {rate} Hz is impossible"),
             Self::InvalidScale(scale) => write!(f, "a rate per count of {scale} is impossible"),
             Self::InvalidPoint { m } => write!(f, "the octave at m = {m} is impossible"),
@@ -214,6 +218,7 @@ mod tests {
     #[test]
     fn messages_end_with_their_remedies() {
         for error in [
+            Error::Invalid(crate::integrity::Reason::Misread { bits: 16 }),
             Error::InvalidRate(-1.0),
             Error::TooFewOctaves {
                 found: 1,

@@ -69,6 +69,7 @@
 //! | [`octave`] | is the accumulator: overlapping differences of adjacent clusters, a quarter apart, exact in 158 bits |
 //! | [`spectrum`] | measures power spectral densities, and computes those of each effect |
 //! | [`integrity`] | decides whether the record is one of a gyro at rest |
+//! | [`motion`] | recognises a gyro that was held, carried or swung for the whole record |
 //! | [`faults`] | detects faults of the logger: repeated samples, stuck values, saturation (clipping), a dead band |
 //! | [`kurtosis`], [`covariate`] | detect jumps of the rate, and its dependence on a temperature |
 //! | [`course`] | finds changes of the noise, bursts, steps and warm-ups in the block history |
@@ -267,7 +268,7 @@ pub use curve::{Curve, Scale};
 pub use error::Error;
 pub use evidence::{
     axis::{self, Axes, Axis},
-    covariate, faults, kurtosis,
+    covariate, faults, kurtosis, motion,
     record::Record,
 };
 pub use fit::coefficient::Coefficient;

@@ -8,7 +8,13 @@ pub use crate::{
     spectrum::{Spectral, SpectrumReading},
 };
 
-use super::{course::CosineTransform, covariate::CrossCurve, kurtosis::Kurtosis, record::Record};
+use super::{
+    course::CosineTransform,
+    covariate::CrossCurve,
+    kurtosis::Kurtosis,
+    motion::{self, Slowness},
+    record::Record,
+};
 use crate::{
     curve::{Curve, Scale},
     error::Error,
@@ -145,13 +151,22 @@ where
                 .and_then(|course| course.cosine_transform(scale)),
             kurtosis: moments.map(|moments| moments.kurtosis(&sums.accumulator)),
             covariates,
-            invalid: self.verdict(axis),
+            invalid: self.verdict(axis).or_else(|| self.motion(scale)),
         })
+    }
+
+    /// Motion that never stopped, which the curves of all axes show together.
+    #[inline(never)]
+    fn motion(&self, scale: Scale) -> Option<Reason> {
+        let axes = self.kept.axes.each_ref();
+        let read = axes.map(|axis| Slowness::of(&axis.accumulator.curve(scale)));
+        motion::judge_axes(&read, scale.per_degree())
     }
 
     /// The reason why the curve of an axis is not valid; `None` if it is valid.
     ///
-    /// The verdict is that of [`Integrity`] on the record that is kept. Motion in one axis makes all axes
+    /// The verdict is that of [`Integrity`] on the record that is kept. It does not know the scale, by which a
+    /// [record](Self::record) also shows [motion](crate::motion) that never stopped. Motion in one axis makes all axes
     /// invalid, because a gyro that turns about one axis is not at rest about the others. A record is also
     /// invalid if the gate left out a larger share of its samples than
     /// [`left_out_per_mille`](crate::integrity::Limits::left_out_per_mille) allows, which is one in four by default.

@@ -6,5 +6,6 @@ pub(crate) mod course;
 pub mod covariate;
 pub mod faults;
 pub mod kurtosis;
+pub mod motion;
 pub(crate) mod observed;
 pub(crate) mod record;

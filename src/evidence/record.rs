@@ -2,6 +2,7 @@
 
 use crate::{
     curve::Curve,
+    error::Error,
     evidence::{
         course::CosineTransform,
         covariate::{CrossCurve, Pair},
@@ -50,6 +51,13 @@ impl<'a, const K: usize, const B: usize> Record<'a, K, B> {
             pairs: &[],
             invalid: None,
         }
+    }
+
+    /// # Errors
+    /// [`Error::Invalid`] if the record is not one of a gyro at rest.
+    pub(crate) fn check(&self) -> Result<(), Error> {
+        self.invalid
+            .map_or(Ok(()), |reason| Err(Error::Invalid(reason)))
     }
 
     /// What a fit works on: the curve and the spectrum.

@@ -14,6 +14,7 @@ use crate::{
     curve::Curve,
     error::Error,
     evidence::{observed::Observed, record::Record},
+    record::integrity::Reason,
     spectrum::Spectrum,
     theory::model::Model,
 };
@@ -21,6 +22,7 @@ use crate::{
 /// Fits a model's coefficients to a curve.
 ///
 /// # Errors
+/// [`Error::Invalid`] if the record is not one of a gyro at rest; its curve alone can be fitted all the same.
 /// [`Error::NoNoise`] if an octave has a variance of zero. [`Error::TooFewOctaves`] for fewer than two
 /// octaves, or for fewer than there are effects with the unconstrained methods, which count only the
 /// octaves that they use. [`Error::Singular`] if the normal equations have no solution.
@@ -42,7 +44,9 @@ pub fn fit<'a, const K: usize, const B: usize>(
     model: &Model,
     options: Options,
 ) -> Result<Fit, Error> {
-    let observed = record.into().observed();
+    let record = record.into();
+    record.check()?;
+    let observed = record.observed();
     let mut fit = Fit::EMPTY;
     let mut work = Work::NEW;
     let mut stage = Stage::Solving;
@@ -79,6 +83,7 @@ pub struct Fitting<const K: usize, const B: usize = 0> {
     work: Work<K, B>,
     fit: Fit,
     options: Options,
+    invalid: Option<Reason>,
     has_begun: bool,
     stage: Stage,
 }
@@ -91,7 +96,9 @@ impl<const K: usize, const B: usize> Fitting<K, B> {
     pub fn new<'a>(record: impl Into<Record<'a, K, B>>, model: Model, options: Options) -> Self {
         let record = record.into();
         let spectrum = record.spectrum.cloned().unwrap_or(Spectrum::EMPTY);
-        Self::of(record.curve.clone(), spectrum, model, options)
+        let mut fitting = Self::of(record.curve.clone(), spectrum, model, options);
+        fitting.invalid = record.invalid;
+        fitting
     }
 
     /// A fit of a model to a curve and to the spectrum of the same record.
@@ -109,6 +116,7 @@ impl<const K: usize, const B: usize> Fitting<K, B> {
             work: Work::NEW,
             fit: Fit::EMPTY,
             options,
+            invalid: None,
             has_begun: false,
             stage: Stage::Solving,
         }
@@ -126,11 +134,13 @@ impl<const K: usize, const B: usize> Fitting<K, B> {
             work,
             fit,
             options,
+            invalid,
             has_begun,
             stage,
         } = self;
         let observed = Observed::new(curve, spectrum);
         if !*has_begun {
+            invalid.map_or(Ok(()), |reason| Err(Error::Invalid(reason)))?;
             stage.begin(observed, model, *options, work, fit)?;
             *has_begun = true;
             return Ok(stage.is_complete().then_some(&self.fit));

@@ -100,12 +100,15 @@ impl Fit {
 /// Fits the five terms to the curve of a record. Only octaves that follow each other from `m = 1` on are fitted.
 ///
 /// # Errors
+/// [`Error::Invalid`] if the record is not one of a gyro at rest; its curve alone can be fitted all the same.
 /// [`Error::NoNoise`] if an octave has a variance of zero, [`Error::TooFewOctaves`] for fewer than two octaves, and
 /// [`Error::Singular`] if the covariance of the octaves is not positive definite.
 pub fn fit<'a, const K: usize, const B: usize>(
     record: impl Into<Record<'a, K, B>>,
 ) -> Result<Fit, Error> {
-    fit_curve(record.into().curve)
+    let record = record.into();
+    record.check()?;
+    fit_curve(record.curve)
 }
 
 /// [`fit()`] of a curve.

@@ -1,12 +1,19 @@
 //! The curves of a log or of a curve file, with what was recorded beside them.
 
 use crate::curve_file::{AxisCurve, CurveFile};
+use allanite::{Curve, Real, integrity::Reason, motion};
 use allanite_log::{
-    Covariates, Evidence, Log, Options,
+    Covariates, Evidence, Log, OCTAVES, Options,
     failure::{Failure, Place},
     pieces::Pieces,
+    unit::Sensor,
 };
 use std::path::Path;
+
+/// The axes of a sensor that is judged as a whole.
+const SENSOR: usize = 3;
+/// No gyro has a larger count, in deg/s: whole numbers without a scale have no unit either.
+const LARGEST_COUNT: f64 = 0.2;
 
 /// The curves of a log.
 ///
@@ -26,7 +33,52 @@ pub fn curves(log: &Log) -> Result<Vec<AxisCurve>, Failure> {
 pub fn with_evidence(log: &Log) -> Result<Vec<(AxisCurve, Evidence)>, Failure> {
     let evidence = log.axes.iter().map(|axis| axis.evidence.clone());
     let evidence = evidence.map(Option::unwrap_or_default).collect::<Vec<_>>();
-    Ok(curves(log)?.into_iter().zip(evidence).collect())
+    Ok(judged(
+        curves(log)?.into_iter().zip(evidence),
+        log.has_scale,
+    ))
+}
+
+/// The axes of a record, each three of which are one sensor's if it has so many, with what their curves say together: whether the
+/// sensor moved all the time. Every record passes here, so that every command knows. `has_scale` is false where the unit is assumed.
+fn judged(
+    axes: impl IntoIterator<Item = (AxisCurve, Evidence)>,
+    has_scale: bool,
+) -> Vec<(AxisCurve, Evidence)> {
+    let mut axes: Vec<(AxisCurve, Evidence)> = axes.into_iter().collect();
+    let size = if axes.len().is_multiple_of(SENSOR) {
+        SENSOR
+    } else {
+        1
+    };
+    for sensor in axes.chunks_mut(size) {
+        let reason = moved(sensor, has_scale);
+        for (_, evidence) in sensor {
+            evidence.invalid = evidence.invalid.or(reason);
+        }
+    }
+    axes
+}
+
+/// The motion that never stopped, of the axes of a sensor.
+fn moved(axes: &[(AxisCurve, Evidence)], has_scale: bool) -> Option<Reason> {
+    let (first, _) = axes.first()?;
+    let is_one = |axis: &AxisCurve| axis.unit == first.unit && axis.rate_hz == first.rate_hz;
+    if first.unit.sensor() != Sensor::Gyro || !axes.iter().all(|(axis, _)| is_one(axis)) {
+        return None;
+    }
+    let in_degrees = first.unit.in_usual();
+    let has_unit = axes
+        .iter()
+        .all(|(axis, _)| axis.rate_per_count * in_degrees <= LARGEST_COUNT);
+    let per_degree = (has_scale && has_unit).then_some((1.0 / in_degrees) as Real);
+    let curves = axes.iter().map(|(axis, _)| axis.curve().ok());
+    let curves: Option<Vec<Curve<OCTAVES>>> = curves.collect();
+    match curves?.as_slice() {
+        [x, y, z] => motion::judge([x, y, z], per_degree),
+        [one] => motion::judge([one], per_degree),
+        _ => None,
+    }
 }
 
 /// The curves of a curve file. It has its rate, scale, unit and axes, so that these options are refused.
@@ -43,7 +95,7 @@ pub fn curves_of_file(path: &Path, options: &Options) -> Result<Vec<AxisCurve>, 
     Ok(CurveFile::read(path)?.axes)
 }
 
-/// The curves of a curve file, whose evidence is what their [pieces](beside) say.
+/// The curves of a curve file, whose evidence is what they and their pieces [say](of_curves).
 ///
 /// # Errors
 /// When the file is not valid, or an option is about logs.
@@ -60,12 +112,16 @@ pub fn curves_without_evidence(
             "give the log, or drop --covariates",
         ));
     }
-    let axes = curves_of_file(path, options)?.into_iter();
-    Ok(axes.map(beside).collect())
+    Ok(of_curves(curves_of_file(path, options)?))
 }
 
-/// A curve, with what its pieces say of the samples, if it has them: whether the record is that of a gyro at rest.
-pub fn beside(axis: AxisCurve) -> (AxisCurve, Evidence) {
+/// The curves of a record, with what they and their pieces say of the samples: whether the record is that of a gyro at rest.
+pub fn of_curves(axes: impl IntoIterator<Item = AxisCurve>) -> Vec<(AxisCurve, Evidence)> {
+    judged(axes.into_iter().map(beside), true)
+}
+
+/// A curve, with what its pieces say of the samples, if it has them.
+fn beside(axis: AxisCurve) -> (AxisCurve, Evidence) {
     let evidence = Evidence {
         invalid: axis.pieces.as_ref().and_then(Pieces::invalid),
         ..Evidence::default()

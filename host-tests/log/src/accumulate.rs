@@ -15,7 +15,6 @@ use super::{
     table::{Ended, RUN, Stop, Table, Visitor, visit_each},
     time_column::TimeColumn,
     tried::TriedColumns,
-    unrest::Unrest,
     watched::SharedSums,
     worker::Plan,
 };
@@ -41,8 +40,6 @@ pub(super) struct Measured {
     pub(super) blocks: BlockSums,
     /// What the logger did to the samples of the axes.
     pub(super) faults: Faults,
-    /// The motion of every sensor, if it was watched.
-    pub(super) unrest: Vec<Unrest>,
     /// The time stamps that were followed, if the log has a time column.
     pub(super) clock: Option<Clock>,
     /// What became of the rows.
@@ -315,7 +312,6 @@ fn finish(
         pairs,
         blocks,
         faults,
-        unrest,
     } = batches.finish();
     if sums.iter().any(|axis| axis.accumulator().samples() == 0) {
         return Err(match passed.tally.cut {
@@ -338,7 +334,6 @@ fn finish(
         pairs,
         blocks,
         faults,
-        unrest,
         clock: passed.clock,
         tally: passed.tally,
     })

@@ -3,16 +3,13 @@
 use super::{
     Axis, Evidence, Log, OCTAVES,
     accumulate::Measured,
-    evidence::{self, Recorded, spread_motion},
+    evidence::{Recorded, spread_motion},
     faults, part,
     quantum::Quantum,
     scaling::{Origin, Scaling},
     sums::Sums,
 };
-use crate::{
-    failure::{Failure, Place},
-    unit::Sensor,
-};
+use crate::failure::{Failure, Place};
 use allanite::Accumulator;
 use std::path::Path;
 
@@ -41,8 +38,11 @@ impl Assembly<'_> {
         mut notes: Vec<String>,
     ) -> Result<(Log, Vec<Axis>), Failure> {
         let (mut axes, mut rest) = (Vec::new(), Vec::new());
-        let units = self.units(&named);
         let some_change = named.iter().any(|(_, (sums, _))| !self.is_constant(sums));
+        let quanta = named.iter().map(|(_, (_, quantum))| quantum);
+        let has_scale = self
+            .scaling
+            .has_scale(quanta.clone().any(Quantum::is_whole));
         let mut least = 0.0_f64;
         for (place, (name, (mut sums, quantum))) in named.into_iter().enumerate() {
             if some_change && self.is_constant(&sums) {
@@ -66,7 +66,7 @@ impl Assembly<'_> {
                 rest.push(behind);
             }
             check_axis(self.path, &axis)?;
-            if let Some(evidence) = self.evidence(place, &axis, &mut sums, quantum, &units)? {
+            if let Some(evidence) = self.evidence(place, &axis, &mut sums, quantum)? {
                 if evidence.invalid.is_none() {
                     least = least.max(self.measured.faults.least(place));
                 }
@@ -92,23 +92,11 @@ impl Assembly<'_> {
         let log = Log {
             rate_hz: self.rate_hz,
             unit: self.scaling.unit,
+            has_scale,
             axes,
             notes,
         };
         Ok((log, rest))
-    }
-
-    /// What motion is measured in.
-    fn units(&self, named: &Named) -> Units {
-        let quanta = || named.iter().map(|(_, (_, quantum))| quantum);
-        let are_whole = quanta().any(Quantum::is_whole);
-        let has_scale = self.scaling.has_scale(are_whole);
-        Units {
-            per_count: quanta()
-                .map(|one| self.scaling.scale * one.step())
-                .collect(),
-            per_degree: has_scale.then(|| 1.0 / self.scaling.unit.in_usual()),
-        }
     }
 
     /// Whether the values of an axis never change, before or behind the first rows.
@@ -124,7 +112,6 @@ impl Assembly<'_> {
         axis: &Axis,
         sums: &mut Sums,
         quantum: Quantum,
-        units: &Units,
     ) -> Result<Option<Evidence>, Failure> {
         let Sums::Watched(watched, beside) = sums else {
             return Ok(None);
@@ -141,14 +128,8 @@ impl Assembly<'_> {
         });
         let coarse = measured.coarse.get(place).copied().flatten();
         let fault = measured.faults.verdict(place);
-        let motion = (self.scaling.unit.sensor() == Sensor::Gyro)
-            .then(|| {
-                let (per_count, per_degree) = (&units.per_count, units.per_degree);
-                evidence::unrest(&measured.unrest, place, rate_hz, per_count, per_degree)
-            })
-            .flatten();
         let recorded = &self.recorded;
-        let evidence = recorded.evidence(path, axis, &**watched, [fault, coarse, motion])?;
+        let evidence = recorded.evidence(path, axis, &**watched, [fault, coarse])?;
         let moved_at = watched.moved_at();
         Ok(Some(Evidence {
             disturbance: recorded.disturbance(
@@ -164,12 +145,6 @@ impl Assembly<'_> {
             ..evidence
         }))
     }
-}
-
-/// The units of counts, and of degrees if the scale is known.
-struct Units {
-    per_count: Vec<f64>,
-    per_degree: Option<f64>,
 }
 
 /// Whether no value of an axis differs from the one before.

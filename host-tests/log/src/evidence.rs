@@ -4,7 +4,6 @@ use super::{
     Axis, CovariateChoice, Disturbance, Evidence, OCTAVES,
     accumulate::{CovariateColumn, Measured},
     disturbed::Extremes,
-    unrest::{self, Unrest},
     watched::{SharedSums, WatchedAxis},
 };
 use crate::{
@@ -65,14 +64,14 @@ impl Recorded {
         })
     }
 
-    /// The evidence of an axis, without its course and its block means. `fault` is what the logger did to its samples,
-    /// `coarse` is why its numbers are too coarse, and `motion` is motion that never stopped, if there is any.
+    /// The evidence of an axis, without its course and its block means. `fault` is what the logger did to its samples, and
+    /// `coarse` is why its numbers are too coarse, if they are.
     pub(super) fn evidence(
         &self,
         path: &Path,
         axis: &Axis,
         watched: &dyn WatchedAxis,
-        [fault, coarse, motion]: [Option<Reason>; 3],
+        [fault, coarse]: [Option<Reason>; 2],
     ) -> Result<Evidence, Failure> {
         let fail = |error: allanite::Error| {
             Place::file(path).failure(format!("axis {}: {error}", axis.name), "check the scale")
@@ -85,7 +84,9 @@ impl Recorded {
         let invalid = match told.invalid {
             Some(Reason::Railed { .. }) => told.invalid,
             Some(Reason::Repeated { .. } | Reason::Stuck { .. }) => fault.or(told.invalid),
-            other => fault.or(coarse).or(other).or(motion),
+            // Motion without a place is judged from the curves of all axes together, by whoever has them.
+            Some(Reason::Moved { motions: 0, .. }) => fault.or(coarse),
+            other => fault.or(coarse).or(other),
         };
         let named = self.named.iter().zip(told.covariates);
         let named = named.filter_map(|(named, cross)| Some((named.as_ref()?.0.clone(), cross)));
@@ -224,25 +225,6 @@ fn short_means(choices: &[CovariateChoice], measured: &Measured) -> Vec<(String,
         }
     }
     columns
-}
-
-/// The motion that never stopped, of the sensor that the axis at this place belongs to. `units` are those per count of all
-/// axes, and `per_degree` is that of 1 °/s, if it is known.
-pub(super) fn unrest(
-    unrest: &[Unrest],
-    place: usize,
-    rate_hz: f64,
-    units: &[f64],
-    per_degree: Option<f64>,
-) -> Option<Reason> {
-    let sensor = place / unrest::AXES;
-    let units = units.as_chunks::<{ unrest::AXES }>().0.get(sensor)?;
-    let found = unrest.get(sensor)?.found(rate_hz, *units, per_degree)?;
-    Some(Reason::Moved {
-        motions: 0,
-        cluster: u16::try_from(found.cluster).unwrap_or(u16::MAX),
-        percent: found.percent,
-    })
 }
 
 /// Motion of one axis makes the curves of all axes invalid, because a gyro that turns about one axis is not at rest

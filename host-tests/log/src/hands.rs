@@ -4,7 +4,6 @@
 use super::{
     faults::Faults,
     sums::{OwnSums, Sums},
-    unrest::Unrest,
     watched::SharedSums,
     worker::{AxisState, Done, Plan, Work, Worker},
 };
@@ -38,8 +37,6 @@ pub(super) struct Totals {
     pub(super) blocks: BlockSums,
     /// What the logger did to the samples.
     pub(super) faults: Faults,
-    /// The motion of every sensor. Empty unless three axes are watched row by row.
-    pub(super) unrest: Vec<Unrest>,
 }
 
 /// Hands the counts of every column to the accumulators, and what they leave of watched axes to their spectra and courses.
@@ -249,7 +246,6 @@ impl Batches {
             pairs: worker.pairs,
             blocks: worker.blocks,
             faults: worker.faults,
-            unrest: worker.unrest,
         }
     }
 }

@@ -159,7 +159,6 @@ mod ulog_messages;
 mod ulog_topics;
 pub mod unit;
 mod unit_names;
-pub mod unrest;
 pub mod visible;
 mod watched;
 mod worker;
@@ -269,6 +268,8 @@ pub struct Log {
     pub rate_hz: f64,
     /// The unit of the rates.
     pub unit: Unit,
+    /// Whether unit and scale are known rather than assumed.
+    pub has_scale: bool,
     /// The axes, in the order of the request or else in that of the columns.
     pub axes: Vec<Axis>,
     /// What the reader decided without being asked, one line for each decision.

@@ -6,7 +6,6 @@ use super::{
     covariate::{self, Derived},
     faults::{self, Faults},
     sums::{Part, filled},
-    unrest::{self, Unrest},
     watched::{self, SharedSums, WatchedAxis},
 };
 use crate::block_means::BlockSums;
@@ -46,15 +45,6 @@ impl Plan {
     /// The number of all columns.
     pub(super) fn columns(&self) -> usize {
         self.axes + self.covariates().len()
-    }
-
-    /// The number of sensors whose motion is watched.
-    fn sensors(&self) -> usize {
-        let is_watched = self.watch.is_some() && self.faults.by_rows;
-        match is_watched && self.axes.is_multiple_of(unrest::AXES) {
-            true => self.axes / unrest::AXES,
-            false => 0,
-        }
     }
 
     fn kept(&self) -> AxisState {
@@ -104,7 +94,6 @@ pub(super) struct Worker {
     pub(super) columns: Vec<Course>,
     pub(super) blocks: BlockSums,
     pub(super) faults: Faults,
-    pub(super) unrest: Vec<Unrest>,
     /// If the columns come row by row, a batch waits until the batches of the other columns with the same rows
     /// arrive.
     waiting: Vec<VecDeque<Vec<i32>>>,
@@ -121,7 +110,6 @@ impl Worker {
             columns: plan.covariates().iter().map(|_| Course::new()).collect(),
             blocks: BlockSums::new(plan.columns()),
             faults: Faults::new(plan.faults.clone(), plan.axes),
-            unrest: vec![Unrest::new(); plan.sensors()],
             waiting: vec![VecDeque::new(); plan.columns()],
             plan,
         }
@@ -160,10 +148,6 @@ impl Worker {
             .filter_map(VecDeque::pop_front)
             .collect();
         self.faults.push_rows(&mut rows);
-        let sensors = rows.as_chunks::<{ unrest::AXES }>().0;
-        for (unrest, axes) in self.unrest.iter_mut().zip(sensors) {
-            unrest.push(axes.each_ref().map(Vec::as_slice));
-        }
         if !self.derived.is_empty() {
             self.blocks.push(&rows);
         }
@@ -193,9 +177,6 @@ impl Worker {
     fn gap(&mut self, missing: u64) -> Vec<Vec<i32>> {
         let mut all_filled = Vec::new();
         self.faults.gap();
-        self.unrest
-            .iter_mut()
-            .for_each(|unrest| unrest.gap(missing));
         self.blocks.gap();
         for derived in &mut self.derived {
             derived.gap();

@@ -1,12 +1,18 @@
 //! Studies how often motion that never stops is told, and how often it is told of records at rest.
 
 use super::noise::{butterworth, flicker, normal, normalised};
-use allanite::integrity::{Integrity, Reason};
+use allanite::{
+    Accumulator, Scale,
+    integrity::{Integrity, Reason},
+    motion,
+};
 use allanite_host::simulate::Random;
-use allanite_log::unrest::Unrest;
 use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
+
+/// Octaves of a record.
+const OCTAVES: usize = 20;
 
 /// The root mean square of motion, in standard deviations of the noise of a sample.
 pub const LEVELS: [f64; 6] = [3.0, 10.0, 30.0, 100.0, 300.0, 1000.0];
@@ -107,16 +113,19 @@ impl Moves {
 pub struct Tally {
     /// The number of records.
     pub records: usize,
-    /// Those of which motion that never stops is told.
+    /// Those of which the curves of all axes show motion.
     pub told: usize,
+    /// Those of which the curve of the axis that varies most shows it by itself.
+    pub alone: usize,
     /// Those of which any motion is told, also by the integrity of an axis.
     pub with_integrity: usize,
 }
 
 impl Tally {
-    const fn add(&mut self, [told, moved]: [bool; 2]) {
+    const fn add(&mut self, [told, alone, moved]: [bool; 3]) {
         self.records += 1;
         self.told += told as usize;
+        self.alone += alone as usize;
         self.with_integrity += (told || moved) as usize;
     }
 }
@@ -202,7 +211,7 @@ struct Gyro {
 }
 
 impl Gyro {
-    /// A consumer, tactical or navigation gyro with a record of 2 to 20 min.
+    /// A consumer, tactical or navigation gyro with a record of 5 s to 20 min.
     fn any(random: &mut Random) -> Self {
         let rate_hz = [50.0, 100.0, 200.0, 500.0][random.random_range(0..4)];
         let n = match random.random_range(0..3) {
@@ -210,7 +219,7 @@ impl Gyro {
             1 => between(5e-4, 5e-3, random),
             _ => between(2e-5, 1e-3, random),
         };
-        let seconds: f64 = between(120.0, 1200.0, random);
+        let seconds: f64 = between(5.0, 1200.0, random);
         Self {
             rate_hz,
             samples: ((seconds * rate_hz) as usize).min(1 << 17),
@@ -475,17 +484,23 @@ impl Gyro {
         about.map(|share| rate.iter().map(|value| share * value).collect())
     }
 
-    /// Whether motion that never stops is told, and whether the integrity of an axis tells motion.
-    fn judge(&self, axes: &Axes) -> [bool; 2] {
+    /// Whether the curves of all axes show motion, whether that of the axis that varies most does, and whether the integrity of an axis
+    /// finds motion.
+    fn judge(&self, axes: &Axes) -> [bool; 3] {
         // The quantum lies well below the noise.
         let quantum = self.sigma / 16.0;
         let counts = axes.each_ref().map(|axis| {
             let counts = axis.iter().map(|value| (value / quantum).round() as i32);
             counts.collect::<Vec<_>>()
         });
-        let mut unrest = Unrest::new();
-        unrest.push(counts.each_ref().map(Vec::as_slice));
-        let found = unrest.found(self.rate_hz, [quantum; 3], Some(1.0));
+        let scale = Scale::new(quantum, self.rate_hz).expect("a scale");
+        let curves = counts.each_ref().map(|counts| {
+            let mut accumulator = Accumulator::<OCTAVES>::new();
+            accumulator.push_slice(counts);
+            accumulator.curve(scale)
+        });
+        let found = motion::judge(curves.each_ref(), Some(1.0));
+        let alone = motion::judge([&curves[loudest(axes)]], Some(1.0));
         let moved = counts.iter().any(|counts| {
             let mut integrity = Integrity::new();
             counts
@@ -493,8 +508,15 @@ impl Gyro {
                 .for_each(|chunk| integrity.push_slice(chunk));
             matches!(integrity.verdict(), Some(Reason::Moved { .. }))
         });
-        [found.is_some(), moved]
+        [found.is_some(), alone.is_some(), moved]
     }
+}
+
+/// The axis that varies most.
+fn loudest(axes: &Axes) -> usize {
+    let size = |&axis: &usize| axes[axis].iter().map(|value| value * value).sum::<f64>();
+    let larger = |one: &usize, other: &usize| size(one).total_cmp(&size(other));
+    (0..axes.len()).max_by(larger).unwrap_or(0)
 }
 
 /// Axes that share some of their motion.

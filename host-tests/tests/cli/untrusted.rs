@@ -17,7 +17,7 @@ fn named(folder: &Path, names: &str) {
     let text = good_text(600);
     let (_, rows) = text.split_once('\n').unwrap();
     let rows = rows.split_once('\n').unwrap().1;
-    let text = format!("# rate_hz=100 unit=deg/s scale=0.01\n{names}\n{rows}");
+    let text = format!("# rate_hz=100 unit=deg/s scale=0.0001\n{names}\n{rows}");
     fs::write(folder.join("a.csv"), text).unwrap();
 }
 

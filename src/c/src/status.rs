@@ -43,6 +43,8 @@ pub enum AllaniteStatus {
     OtherTest = 16,
     /// The noise of the other record is not that of this one: it is of another sensor, scale or filter.
     OtherSensor = 17,
+    /// The record is not one of a gyro at rest: `allanite_record_summary` gives the reason.
+    InvalidRecord = 18,
 }
 
 impl From<Error> for AllaniteStatus {
@@ -58,6 +60,7 @@ impl From<Error> for AllaniteStatus {
             Error::NoNoise { .. } => Self::NoNoise,
             Error::Singular => Self::Singular,
             Error::OtherTest => Self::OtherTest,
+            Error::Invalid(_) => Self::InvalidRecord,
             _ => Self::Other,
         }
     }

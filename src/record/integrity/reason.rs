@@ -175,7 +175,7 @@ impl core::fmt::Display for Reason {
                 percent,
             } => write!(
                 f,
-                "the gyro was never at rest: motion explains at least {percent} % of the variance of \
+                "the gyro was not at rest: motion explains at least {percent} % of the variance of \
                  means of {cluster} samples; record again at rest, untouched"
             ),
             Self::Moved {

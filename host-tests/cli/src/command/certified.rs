@@ -70,8 +70,7 @@ pub(crate) fn certificate(
     content: Content,
 ) -> Result<Certificate, Failure> {
     let axes = if record::is_curve(path) {
-        let axes = CurveFile::read(path)?.axes.into_iter();
-        axes.map(allanite_host::record::beside).collect()
+        allanite_host::record::of_curves(CurveFile::read(path)?.axes)
     } else {
         record::read_with_evidence(path, about_log, covariates)?
     };

@@ -131,12 +131,14 @@ impl Record {
                 "give axes of one sensor",
             ));
         }
-        let curve = |(axis, pieces): &(String, Pieces)| {
-            AxisCurve::part(pieces.clone(), axis, unit).map(record::beside)
-        };
+        let curve = |(axis, pieces): &(String, Pieces)| AxisCurve::part(pieces.clone(), axis, unit);
         Ok(Self {
             path: PathBuf::from("pieces"),
-            axes: axes.iter().map(curve).collect::<Result<_, Failure>>()?,
+            axes: record::of_curves(
+                axes.iter()
+                    .map(curve)
+                    .collect::<Result<Vec<_>, Failure>>()?,
+            ),
             notes: Vec::new(),
         })
     }

@@ -131,6 +131,7 @@ impl Recording {
         let log = Log {
             rate_hz: self.rate_hz,
             unit: self.unit,
+            has_scale: true,
             axes: axes.collect(),
             notes: Vec::new(),
         };

@@ -1,5 +1,6 @@
 //! Disturbed records must be refused, and records at rest must not.
 
+mod carried;
 mod coarse;
 mod disturbed;
 mod rest;

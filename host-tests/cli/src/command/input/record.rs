@@ -139,7 +139,7 @@ pub(crate) fn measure_part(
     pieces.collect()
 }
 
-/// The curves of a log with the evidence that it holds beside them. The evidence of a curve file is what its [pieces](beside) tell.
+/// The curves of a log with the evidence that it holds beside them. The evidence of a curve file is what it and its pieces say.
 pub(crate) fn read_with_evidence(
     path: &Path,
     arguments: &LogArguments,

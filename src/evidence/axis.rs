@@ -25,6 +25,7 @@ use crate::{
             gate::{Gate, Passing as _},
             moments::MomentSums as _,
         },
+        course::Course,
         integrity::{Integrity, Reason, exceeds},
     },
     spectrum::Spectrum,
@@ -151,7 +152,10 @@ where
                 .and_then(|course| course.cosine_transform(scale)),
             kurtosis: moments.map(|moments| moments.kurtosis(&sums.accumulator)),
             covariates,
-            invalid: self.verdict(axis).or_else(|| self.motion(scale)),
+            invalid: self
+                .verdict(axis)
+                .or_else(|| sums.course.course().and_then(Course::change))
+                .or_else(|| self.motion(scale)),
         })
     }
 
@@ -165,8 +169,9 @@ where
 
     /// The reason why the curve of an axis is not valid; `None` if it is valid.
     ///
-    /// The verdict is that of [`Integrity`] on the record that is kept. It does not know the scale, by which a
-    /// [record](Self::record) also shows [motion](crate::motion) that never stopped. Motion in one axis makes all axes
+    /// The verdict is that of [`Integrity`] on the record that is kept. A
+    /// [record](Self::record) also shows [motion](crate::motion) that never stopped, for which its scale is needed, and a change of
+    /// the noise, if its [course](Courses) is kept. Motion in one axis makes all axes
     /// invalid, because a gyro that turns about one axis is not at rest about the others. A record is also
     /// invalid if the gate left out a larger share of its samples than
     /// [`left_out_per_mille`](crate::integrity::Limits::left_out_per_mille) allows, which is one in four by default.

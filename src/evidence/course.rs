@@ -1,5 +1,6 @@
 //! The course of a record as it is read: its blocks with units, and their cosine transform.
 
+mod change;
 mod cosine;
 
 pub use cosine::CosineTransform;

@@ -21,6 +21,7 @@ use crate::{
     },
     record::integrity::Reason,
 };
+use network::{FEATURES, JOINT};
 use weights::{ONE_AXIS, THREE_AXES};
 
 /// The averaging times in seconds at which a curve is read, an octave apart: at the octave next to each.
@@ -34,13 +35,8 @@ const LEAST_DIFFERENCES: u64 = 9;
 /// The steepest rise of τσ² in an octave that says more than a smaller one, in powers of ten. Smooth motion rises by 1.2.
 const STEEPEST: Real = 0.95;
 
-/// The number of features of an axis.
-const FEATURES: usize = 10;
-/// The place of that which has a unit.
+/// The place of the feature of an axis that has a unit, and of the other one of three axes.
 const LEVEL: usize = 5;
-/// The number of features of three axes: the largest of each over the axes, and what the axes say together.
-const JOINT: usize = FEATURES + 6;
-/// The place of the one that has a unit, too.
 const LEAST_LEVEL: usize = FEATURES + 2;
 
 /// What the curve of an axis says about motion.

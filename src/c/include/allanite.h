@@ -181,6 +181,8 @@ enum AllaniteStatus
   ALLANITE_STATUS_OTHER_TEST = 16,
   // The noise of the other record is not that of this one: it is of another sensor, scale or filter.
   ALLANITE_STATUS_OTHER_SENSOR = 17,
+  // The record is not one of a gyro at rest: `allanite_record_summary` gives the reason.
+  ALLANITE_STATUS_INVALID_RECORD = 18,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L

@@ -30,6 +30,8 @@ pub enum AllaniteReason {
     DeadBand = 10,
     /// The counts were read without their sign, or with their bytes in the wrong order.
     Misread = 11,
+    /// The noise changed, as by another range of the sensor.
+    Changed = 12,
 }
 
 impl AllaniteReason {
@@ -46,6 +48,7 @@ impl AllaniteReason {
             Some(Reason::LeftOut { .. }) => Self::LeftOut,
             Some(Reason::DeadBand { .. }) => Self::DeadBand,
             Some(Reason::Misread { .. }) => Self::Misread,
+            Some(Reason::Changed { .. }) => Self::Changed,
             Some(_) => Self::Other,
         }
     }

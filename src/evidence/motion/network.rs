@@ -2,6 +2,11 @@
 
 use crate::numerics::real::Real;
 
+/// The number of features of an axis.
+pub(super) const FEATURES: usize = 10;
+/// The number of features of three axes: the largest of each over the axes, and what the axes say together.
+pub(super) const JOINT: usize = FEATURES + 6;
+
 /// `I` features, `H` hidden units.
 pub(super) struct Network<const I: usize, const H: usize> {
     /// What each unit adds up: the features times these weights.

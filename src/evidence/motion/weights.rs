@@ -7,7 +7,7 @@
 //! motor, a trembling arm, and of a person who walks or exercises, at 3 to 1000 times the noise of a sample. Half of the records were
 //! judged without their unit. `cargo xtask study motion` counts how often rest and motion are confused in records of its own.
 
-use super::{FEATURES, JOINT, network::Network};
+use super::network::{FEATURES, JOINT, Network};
 
 /// Of the features of three axes.
 pub(super) static THREE_AXES: Network<JOINT, 12> = Network {

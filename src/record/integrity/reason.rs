@@ -69,6 +69,13 @@ pub enum Reason {
         /// Share of ΣD² of these clusters that the motion contributes, in percent; at least, where it never stopped.
         percent: u8,
     },
+    /// The noise of a sample is another one from a place of the record on, by a factor that no gyro at rest reaches.
+    Changed {
+        /// Samples before the change, to one block of the [`Course`](crate::course::Course).
+        after: u64,
+        /// The noise behind the change, in percent of that before it; at most 65 535.
+        percent: u16,
+    },
     /// Too many samples were lost.
     Missing {
         /// Number of samples lost.
@@ -193,6 +200,11 @@ impl core::fmt::Display for Reason {
                      means of {cluster} samples; record again at rest, untouched"
                 )
             }
+            Self::Changed { after, percent } => write!(
+                f,
+                "the noise changed to {percent} % of what it was after {after} samples, as another range, rate or \
+                 filter of the sensor makes it; keep these settings, and record again"
+            ),
             Self::Missing { missing, sent } => write!(
                 f,
                 "{missing} of {sent} samples are missing; read faster or record at a lower rate"

@@ -208,5 +208,6 @@ fn is_possible_verdict(verdict: Verdict) -> bool {
         Reason::DeadBand { zeros, samples } => zeros <= samples,
         Reason::Misread { bits } => bits <= 32,
         Reason::Coarse { per_mille } => per_mille < 1000,
+        Reason::Changed { percent, .. } => percent != 100,
     }
 }

@@ -26,6 +26,7 @@ pub(crate) enum WireReason {
     Coarse(u16),
     DeadBand(u64, u64),
     Misread(u8),
+    Changed(u64, u16),
 }
 
 impl From<Option<Verdict>> for WireVerdict {
@@ -81,6 +82,7 @@ impl From<Reason> for WireReason {
             Reason::Coarse { per_mille } => Self::Coarse(per_mille),
             Reason::DeadBand { zeros, samples } => Self::DeadBand(zeros, samples),
             Reason::Misread { bits } => Self::Misread(bits),
+            Reason::Changed { after, percent } => Self::Changed(after, percent),
         }
     }
 }
@@ -110,6 +112,7 @@ impl From<WireReason> for Reason {
             WireReason::Coarse(per_mille) => Self::Coarse { per_mille },
             WireReason::DeadBand(zeros, samples) => Self::DeadBand { zeros, samples },
             WireReason::Misread(bits) => Self::Misread { bits },
+            WireReason::Changed(after, percent) => Self::Changed { after, percent },
         }
     }
 }

@@ -3,6 +3,7 @@
 mod carried;
 mod coarse;
 mod disturbed;
+mod range;
 mod rest;
 mod state;
 

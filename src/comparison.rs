@@ -323,13 +323,18 @@ fn compare_short<const K: usize, const B: usize>(
         (0, 0),
         &mut |_, covariance| relative += covariance / (model * model),
     );
+    // The effects of a model may all vanish so far from where they were fitted. Then nothing is a share of it.
+    let exists = model > 0.0;
     ComparedOctave {
         m: point.m,
         tau_s: point.tau_s,
         measured: point.variance,
         model: model * problem.variance_unit,
-        z: (point.variance / problem.variance_unit / model - 1.0) / math::sqrt(relative),
-        shares: shares.map(|share| single(share / model)),
+        z: match exists {
+            true => (point.variance / problem.variance_unit / model - 1.0) / math::sqrt(relative),
+            false => Real::INFINITY,
+        },
+        shares: shares.map(|share| if exists { single(share / model) } else { 0.0 }),
     }
 }
 

@@ -140,6 +140,16 @@ impl Failure {
         Place::default().failure(what, remedy)
     }
 
+    /// The same failure in this file, if it names none.
+    pub fn about(mut self, path: &Path) -> Self {
+        if let Self::Input { place, .. } | Self::Axis { place, .. } = &mut self
+            && place.file.is_none()
+        {
+            place.file = Some(path.to_owned());
+        }
+        self
+    }
+
     /// The same failure with more of what is wrong.
     pub fn and(self, more: &str) -> Self {
         match self {
@@ -266,4 +276,27 @@ pub fn brief(value: f64) -> String {
 /// be seen.
 pub fn one_line(text: &str) -> String {
     visible(&text.replace(char::is_control, " ")).into_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_not_built_in_names_the_file_that_needs_it() {
+        let failure = Failure::not_built_in("reading bags").about(Path::new("a.mcap"));
+        let text = failure.to_string();
+        assert!(
+            text.starts_with("a.mcap: reading bags is not part"),
+            "{text}"
+        );
+        // A failure that knows its file keeps it.
+        let other = Place::file(Path::new("b.csv")).failure("no rows", "record some");
+        assert!(
+            other
+                .about(Path::new("a.mcap"))
+                .to_string()
+                .starts_with("b.csv")
+        );
+    }
 }

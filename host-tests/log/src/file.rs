@@ -175,7 +175,7 @@ fn read_format(
             Ok((log, rest))
         }
         #[cfg(not(feature = "tables"))]
-        Format::Table(_) => Err(Failure::not_built_in("reading tables in binary")),
+        Format::Table(_) => Err(Failure::not_built_in("reading tables in binary").about(path)),
         #[cfg(feature = "tables")]
         Format::Table(kind) => {
             let table = tables::convert(path, kind, options, progress)?;
@@ -188,7 +188,7 @@ fn read_format(
         }
         #[cfg(not(feature = "bags"))]
         Format::Mcap | Format::Ros1 | Format::Sqlite | Format::Folder => {
-            Err(Failure::not_built_in("reading bags"))
+            Err(Failure::not_built_in("reading bags").about(path))
         }
         #[cfg(feature = "bags")]
         Format::Mcap | Format::Ros1 | Format::Sqlite | Format::Folder => {

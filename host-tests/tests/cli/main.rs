@@ -21,6 +21,7 @@ const INVALID: Verdict = Verdict::Invalid(Reason::Spiked {
     percent: 0,
 });
 
+mod attributes;
 mod bad_input;
 mod certify;
 mod command_line;

@@ -4,9 +4,12 @@ use super::{
     arrays::{self, Array, Values},
     wrong::Wrong,
 };
-use crate::converted::{MOST_TEXT, MOST_TIMES, Text};
-use hdf5_pure::{DType, Dataset, Error, File, Group};
-use std::path::Path;
+use crate::{
+    converted::{MOST_TEXT, MOST_TIMES, Text},
+    unit_names::{are_units, with_unit},
+};
+use hdf5_pure::{AttrValue, DType, Dataset, Error, File, Group};
+use std::{collections::HashMap, path::Path};
 
 /// How deep groups are looked into, and how many datasets are looked at. Chosen by hand.
 const DEEPEST: usize = 8;
@@ -48,6 +51,8 @@ fn gather(
         let Some(values) = values(&dataset)? else {
             continue;
         };
+        let conventions = Conventions::of(&dataset.attrs()?);
+        let (name, values) = (conventions.named(&name), conventions.applied(values));
         let shape: Vec<usize> = shape.iter().map(|&length| length as usize).collect();
         arrays.extend(Array::new(place.to_owned(), name, &shape, false, values));
     }
@@ -59,6 +64,82 @@ fn gather(
         }
     }
     Ok(())
+}
+
+/// What the attributes of a dataset say of its numbers, by the conventions for climate and forecast metadata (CF, section 2.5.1 and
+/// 8.1), which netCDF, xarray and others follow: a count that stands for no value, scale and offset, and the unit.
+struct Conventions {
+    /// The numbers that stand for no value.
+    missing: Vec<f64>,
+    scale: f64,
+    offset: f64,
+    unit: String,
+}
+
+impl Conventions {
+    fn of(attributes: &HashMap<String, AttrValue>) -> Self {
+        let numbers = |name: &str| attributes.get(name).map(numbers).unwrap_or_default();
+        let number = |name: &str, usual: f64| numbers(name).first().copied().unwrap_or(usual);
+        let unit = attributes.get("units").and_then(AttrValue::as_str);
+        Self {
+            missing: [numbers("_FillValue"), numbers("missing_value")].concat(),
+            scale: number("scale_factor", 1.0),
+            offset: number("add_offset", 0.0),
+            unit: unit.unwrap_or_default().to_owned(),
+        }
+    }
+
+    /// The name with the unit, if it is one that a sensor of this kind has.
+    fn named(&self, name: &str) -> String {
+        match are_units(&[self.unit.clone()]) {
+            true => with_unit(name, &self.unit),
+            false => name.to_owned(),
+        }
+    }
+
+    /// The values in their unit, and NaN for those that are none.
+    fn applied(&self, values: Values) -> Values {
+        let is_packed = self.scale != 1.0 || self.offset != 0.0;
+        let is_missing = |value: f64| self.missing.contains(&value);
+        let convert = |value: f64| match is_missing(value) {
+            true => f64::NAN,
+            false if is_packed => value * self.scale + self.offset,
+            false => value,
+        };
+        let floats: Vec<f64> = match &values {
+            Values::Signed(values) => values.iter().map(|&value| convert(value as f64)).collect(),
+            Values::Unsigned(values) => values.iter().map(|&value| convert(value as f64)).collect(),
+            Values::Float(values) => values.iter().map(|&value| convert(value)).collect(),
+        };
+        // Whole numbers stay whole if there is nothing to say about them.
+        match is_packed || floats.iter().any(|value| value.is_nan()) {
+            true => Values::Float(floats),
+            false => values,
+        }
+    }
+}
+
+/// The numbers of an attribute; none if it is text.
+fn numbers(attribute: &AttrValue) -> Vec<f64> {
+    match attribute {
+        AttrValue::F32(value) => vec![f64::from(*value)],
+        AttrValue::F64(value) => vec![*value],
+        AttrValue::I8(value) => vec![f64::from(*value)],
+        AttrValue::I16(value) => vec![f64::from(*value)],
+        AttrValue::I32(value) => vec![f64::from(*value)],
+        AttrValue::I64(value) => vec![*value as f64],
+        AttrValue::U8(value) => vec![f64::from(*value)],
+        AttrValue::U16(value) => vec![f64::from(*value)],
+        AttrValue::U32(value) => vec![f64::from(*value)],
+        AttrValue::U64(value) => vec![*value as f64],
+        AttrValue::F32Array(values) => values.iter().map(|&value| value.into()).collect(),
+        AttrValue::F64Array(values) => values.clone(),
+        AttrValue::I8Array(values) => values.iter().map(|&value| value.into()).collect(),
+        AttrValue::I16Array(values) => values.iter().map(|&value| value.into()).collect(),
+        AttrValue::I32Array(values) => values.iter().map(|&value| value.into()).collect(),
+        AttrValue::I64Array(values) => values.iter().map(|&value| value as f64).collect(),
+        _ => Vec::new(),
+    }
 }
 
 /// The values of a dataset of numbers.

@@ -29,6 +29,8 @@ pub(super) struct Bag {
     /// The files in the order of their messages.
     files: Vec<PathBuf>,
     topic: String,
+    /// What the first messages say of their own values.
+    said: Vec<String>,
     metadata: Metadata,
     columns: Columns,
 }
@@ -76,8 +78,19 @@ impl Bag {
             };
             first.iter().map(value).collect()
         };
+        let quantities = ["angular velocity", "linear acceleration"].into_iter();
+        let unmeasured = quantities.enumerate().filter(|&(quantity, _)| {
+            !first.is_empty() && first.iter().all(|message| message.unmeasured[quantity])
+        });
+        let said = unmeasured.map(|(_, quantity)| {
+            format!(
+                "its messages say that there is no estimate of the {quantity} (the first element of its covariance is -1): check \
+                 whether the driver measures it"
+            )
+        });
         Ok(Self {
             container,
+            said: said.collect(),
             files,
             topic,
             metadata: Metadata::default(),
@@ -139,7 +152,10 @@ impl Table for Bag {
     }
 
     fn notes(&self) -> Vec<String> {
-        vec![format!("topic {}", self.topic)]
+        let topic = format!("topic {}", self.topic);
+        std::iter::once(topic)
+            .chain(self.said.iter().cloned())
+            .collect()
     }
 }
 

@@ -13,7 +13,7 @@ const MAGICS: [(&[u8], &str, &str); 12] = [
     (
         b"MDF     ",
         "a measurement in the format MDF",
-        "export its group with the gyro as CSV, such as with asammdf",
+        "export each channel of the gyro as CSV, such as with `MDF('FILE').get(NAME)` of asammdf, and keep its invalid samples empty: an export of the whole file fills them with straight lines",
     ),
     (
         b"TDSm",

@@ -41,7 +41,13 @@ pub(super) struct ImuMessage {
     pub(super) stamp_ns: i64,
     /// The angular rates, in rad/s, and then the accelerations, in m/s².
     pub(super) values: [f64; 6],
+    /// Whether the first element of the covariance of the rates, and of the accelerations, is −1. The definition of the message says:
+    /// then there is no estimate of this quantity.
+    pub(super) unmeasured: [bool; 2],
 }
+
+/// The mark in a covariance of a quantity that is not measured.
+const UNMEASURED: f64 = -1.0;
 
 const SHORT: &str = "a message is shorter than sensor_msgs/msg/Imu";
 
@@ -50,9 +56,9 @@ struct Imu {
     header: Header,
     _orientation: ([f64; 4], [f64; 9]),
     angular_velocity: [f64; 3],
-    _angular_velocity_covariance: [f64; 9],
+    angular_velocity_covariance: [f64; 9],
     linear_acceleration: [f64; 3],
-    _linear_acceleration_covariance: [f64; 9],
+    linear_acceleration_covariance: [f64; 9],
 }
 
 #[derive(Deserialize)]
@@ -93,6 +99,7 @@ impl ImuMessage {
         Some(Self {
             stamp_ns: i64::from(secs) * 1_000_000_000 + i64::from(nsecs),
             values: [a, b, c, d, e, f],
+            unmeasured: [floats[16], floats[28]].map(|first| first == UNMEASURED),
         })
     }
 
@@ -108,9 +115,12 @@ impl ImuMessage {
         let (imu, _) = imu.map_err(|_| SHORT)?;
         let [a, b, c] = imu.angular_velocity;
         let [d, e, f] = imu.linear_acceleration;
+        let [of_rates, ..] = imu.angular_velocity_covariance;
+        let [of_forces, ..] = imu.linear_acceleration_covariance;
         Ok(Self {
             stamp_ns: i64::from(imu.header.sec) * 1_000_000_000 + i64::from(imu.header.nanosec),
             values: [a, b, c, d, e, f],
+            unmeasured: [of_rates, of_forces].map(|first| first == UNMEASURED),
         })
     }
 }
@@ -121,7 +131,7 @@ mod tests {
     use proptest::prelude::*;
 
     /// A message in the given byte order, built by hand.
-    fn message(frame: &[u8], values: [f64; 6], big: bool) -> Vec<u8> {
+    fn message(frame: &[u8], values: [f64; 6], covariances: [f64; 2], big: bool) -> Vec<u8> {
         let mut bytes = vec![0, u8::from(!big), 0, 0];
         let word = |value: u32| {
             if big {
@@ -144,10 +154,19 @@ mod tests {
         bytes.push(0);
         // CDR aligns floats to multiples of eight bytes after the encapsulation.
         bytes.resize(4 + (bytes.len() - 4).next_multiple_of(8), 0);
-        let [rates, forces] = [&values[..3], &values[3..]];
-        let floats = [&[0.0; 13][..], rates, &[0.0; 9], forces, &[0.0; 9]].concat();
-        bytes.extend(floats.into_iter().flat_map(float));
+        bytes.extend(floats(values, covariances).into_iter().flat_map(float));
         bytes
+    }
+
+    /// The floats of a message, of which each covariance begins with this element.
+    fn floats(values: [f64; 6], covariances: [f64; 2]) -> Vec<f64> {
+        let [rates, forces] = [&values[..3], &values[3..]];
+        let [of_rates, of_forces] = covariances.map(|first| {
+            let mut covariance = [0.0; 9];
+            covariance[0] = first;
+            covariance
+        });
+        [&[0.0; 13][..], rates, &of_rates, forces, &of_forces].concat()
     }
 
     proptest! {
@@ -155,10 +174,12 @@ mod tests {
         fn messages_of_either_byte_order_are_read(
             frame in "[a-z]{0,12}",
             values in prop::array::uniform6(-1e3..1e3),
+            covariances in prop::array::uniform2(prop_oneof![Just(-1.0), 0.0..1.0]),
             big: bool,
         ) {
-            let bytes = message(frame.as_bytes(), values, big);
-            let expected = ImuMessage { stamp_ns: 7_250_000_000, values };
+            let bytes = message(frame.as_bytes(), values, covariances, big);
+            let unmeasured = covariances.map(|first| first == -1.0);
+            let expected = ImuMessage { stamp_ns: 7_250_000_000, values, unmeasured };
             prop_assert_eq!(ImuMessage::read(&bytes, Encoding::Cdr), Ok(expected));
             for cut in 0..bytes.len() {
                 prop_assert!(ImuMessage::read(&bytes[..cut], Encoding::Cdr).is_err());
@@ -169,14 +190,18 @@ mod tests {
         fn packed_messages_are_read(
             frame in "[a-z]{0,12}",
             values in prop::array::uniform6(-1e3..1e3),
+            covariances in prop::array::uniform2(prop_oneof![Just(-1.0), 0.0..1.0]),
         ) {
             let words = [3, 7, 250_000_000, frame.len() as u32];
             let mut bytes: Vec<u8> = words.into_iter().flat_map(u32::to_le_bytes).collect();
             bytes.extend(frame.as_bytes());
-            let [rates, forces] = [&values[..3], &values[3..]];
-            let floats = [&[0.0; 13][..], rates, &[0.0; 9], forces, &[0.0; 9]].concat();
+            let floats = floats(values, covariances);
             bytes.extend(floats.into_iter().flat_map(f64::to_le_bytes));
-            let expected = ImuMessage { stamp_ns: 7_250_000_000, values };
+            let expected = ImuMessage {
+                stamp_ns: 7_250_000_000,
+                values,
+                unmeasured: covariances.map(|first| first == -1.0),
+            };
             prop_assert_eq!(ImuMessage::read(&bytes, Encoding::Ros1), Ok(expected));
             for cut in 0..bytes.len() {
                 prop_assert!(ImuMessage::read(&bytes[..cut], Encoding::Ros1).is_err());

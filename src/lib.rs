@@ -110,13 +110,13 @@
 //! | RAM of an accumulator of 24 octaves | 2480 bytes |
 //! | flash of accumulator, curve and the fit of the five terms alone | 14 000 bytes |
 //! | that fit, of 20 octaves | 1.1 million instructions, 3 400 bytes of stack |
-//! | flash of accumulator, curve and fit | 44 100 bytes |
-//! | flash with the diagnosis and the whole catalogue | 127 100 bytes |
-//! | a fit of 20 octaves | 15 million instructions |
+//! | flash of accumulator, curve and fit | 44 300 bytes |
+//! | flash with the diagnosis and the whole catalogue | 131 700 bytes |
+//! | a fit of 20 octaves | 16 million instructions |
 //! | RAM of a spectrum, for an axis | 3928 bytes |
 //! | a sample into a spectrum | 25 instructions in the interrupt, 215 in the main loop |
-//! | flash with diagnosis and spectrum | 140 000 bytes |
-//! | a diagnosis with a spectrum | 272 million instructions, 51 000 bytes of stack |
+//! | flash with diagnosis and spectrum | 144 500 bytes |
+//! | a diagnosis with a spectrum | 272 million instructions, 53 000 bytes of stack |
 //!
 //! A sample always takes a bounded number of instructions, whatever the input and however long the record. The
 //! library does not allocate and has no `unsafe` code, and no input makes it panic. [`Axes`] names its own cost,

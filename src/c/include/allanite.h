@@ -373,6 +373,10 @@ enum AllaniteReason
   // The counts were read without their sign, or with their bytes in the wrong order.
   ALLANITE_REASON_MISREAD = 11,
 #endif
+#if defined(ALLANITE_WHOLE)
+  // The noise changed, as by another range of the sensor.
+  ALLANITE_REASON_CHANGED = 12,
+#endif
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L

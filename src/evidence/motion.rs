@@ -4,9 +4,7 @@
 //! whole record gives it no such place. What remains is the shape of the curve between 0.03 s and 4 s: motion is slow, so that τσ²(τ),
 //! which white noise keeps constant, rises there by decades, and falls again, because hands and vehicles come back while drift does
 //! not; it is large; and it turns the sensor about one axis more than about the others. Each of these is found in gyros at rest, too:
-//! a resonance rises and falls, bias instability rises, and axes differ. A [network] of one hidden layer weighs them.
-//!
-//! [network]: weights
+//! a resonance rises and falls, bias instability rises, and axes differ. A network of one hidden layer weighs them.
 //!
 //! Nothing is kept for this, and a sample costs nothing, so that every door that has a curve can ask.
 

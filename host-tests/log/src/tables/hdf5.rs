@@ -91,7 +91,7 @@ impl Conventions {
 
     /// The name with the unit, if it is one that a sensor of this kind has.
     fn named(&self, name: &str) -> String {
-        match are_units(&[self.unit.clone()]) {
+        match are_units(std::slice::from_ref(&self.unit)) {
             true => with_unit(name, &self.unit),
             false => name.to_owned(),
         }

@@ -9,6 +9,7 @@
 
 use super::Course;
 use crate::{
+    list,
     numerics::{
         math::{log, sqrt},
         real::{Real, real},
@@ -116,16 +117,31 @@ fn scatter(levels: &[Real], block_length: u32) -> Real {
         [one, next] => (next - one).abs(),
         _ => 0.0,
     });
-    let mut steps: Vec<Real, BLOCKS> = pairs.collect();
-    steps.sort_unstable_by(Real::total_cmp);
+    let mut steps: Vec<Real, BLOCKS> = list::fill(pairs);
+    sort(&mut steps);
     let usual = 1.05 * steps.get(steps.len() / 2).copied().unwrap_or(0.0);
     usual.max(0.52 / sqrt(real(block_length)))
 }
 
 fn sorted(blocks: &[Real]) -> Vec<Real, NEAR> {
-    let mut sorted: Vec<Real, NEAR> = blocks.iter().copied().take(NEAR).collect();
-    sorted.sort_unstable_by(Real::total_cmp);
+    let mut sorted: Vec<Real, NEAR> = list::fill(blocks.iter().copied().take(NEAR));
+    sort(&mut sorted);
     sorted
+}
+
+/// Sorts a few values by insertion: the sort of `core` takes kilobytes of flash.
+#[inline(never)]
+fn sort(values: &mut [Real]) {
+    for end in 1..values.len() {
+        let mut length = end.saturating_add(1);
+        while let Some([.., before, last]) = values.get_mut(..length) {
+            if *before <= *last {
+                break;
+            }
+            core::mem::swap(before, last);
+            length = length.saturating_sub(1);
+        }
+    }
 }
 
 /// The median of sorted values; 0 if there are none.

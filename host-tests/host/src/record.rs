@@ -40,7 +40,7 @@ pub fn with_evidence(log: &Log) -> Result<Vec<(AxisCurve, Evidence)>, Failure> {
 }
 
 /// The axes of a record, each three of which are one sensor's if it has so many, with what their curves say together: whether the
-/// sensor moved all the time. Every record passes here, so that every command knows. `has_scale` is false where the unit is assumed.
+/// sensor moved all the time. Every record that is judged passes here; `compare` fits curves alone. `has_scale` is false where the unit is assumed.
 fn judged(
     axes: impl IntoIterator<Item = (AxisCurve, Evidence)>,
     has_scale: bool,

@@ -185,7 +185,10 @@ where
             .gate
             .gate()
             .and_then(|gate| self.left_out_too_much(gate));
-        own.and_then(verdict).or(others).or(left_out)
+        let reads = self.kept.reads.verdict();
+        let unanswered = reads.filter(|reason| matches!(reason, Reason::Unanswered { .. }));
+        let first = unanswered.or_else(|| own.and_then(verdict)).or(others);
+        first.or(reads).or(left_out)
     }
 
     fn left_out_too_much(&self, gate: &Gate<AXES, COVARIATES>) -> Option<Reason> {

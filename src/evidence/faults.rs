@@ -1,6 +1,9 @@
 //! What a logger did to samples: repeated, held, clipped and cut-out ones, judged from their counts.
 
-pub use crate::record::faults::{JointRepeats, SampleFaults};
+pub use crate::record::{
+    faults::{JointRepeats, SampleFaults},
+    reads::Reads,
+};
 
 use crate::{
     list::numbered,
@@ -9,7 +12,7 @@ use crate::{
         real::{Real, consts::FRAC_1_SQRT_2, real},
     },
     record::{
-        faults::{Hole, ends::End, steps::Steps},
+        faults::{Hole, ends::End, steps::Steps, zero_runs::ZeroRuns},
         integrity::Reason,
     },
 };
@@ -27,6 +30,9 @@ const LEAST: Real = 0.005;
 const CHANCE: Real = 0.002;
 /// A run longer than so many mean runs holds a value, as [`Integrity`](crate::integrity::Integrity) has it.
 const LONGEST_RUN: Real = 128.0;
+/// The variance in squared steps below which values have a few levels, and the correlation of neighbours below which they are pulses.
+const FEW_LEVELS: Real = 2.0;
+const OPPOSED: Real = -0.04;
 /// The share of equal neighbours from which neither long runs nor full ends of the range mean anything.
 const MOSTLY_EQUAL: Real = 0.45;
 
@@ -115,6 +121,9 @@ impl SampleFaults {
         if one + two < 60.0 {
             return fine_repeats(steps);
         }
+        if self.is_pulsed() {
+            return Repeats::unknown(zero / pairs);
+        }
         if two < 60.0 || two < 0.02 * one {
             return Repeats::unknown(zero / pairs);
         }
@@ -145,6 +154,23 @@ impl SampleFaults {
         let share = number / pairs;
         let chance = (zero - number) / (pairs - number).max(1.0);
         Repeats::new(z, share, error / pairs, chance)
+    }
+
+    /// Whether values of a few levels lie on the other side of their mean more often than not after each other, as counts of pulses of an
+    /// angle do: what one sample has too much, the next one lacks. Their differences have no smooth distribution.
+    fn is_pulsed(&self) -> bool {
+        let (near, pairs) = (self.steps.near, self.steps.pairs);
+        let [_, one, two, three] = near.map(|number| number as Real);
+        let counted: u64 = near
+            .iter()
+            .fold(0, |sum: u64, number| sum.saturating_add(*number));
+        let far = pairs.saturating_sub(counted) as Real;
+        let squares = one + 4.0 * two + 9.0 * three + 16.0 * far;
+        let step = real(self.steps.step());
+        let (_, variance) = self.mean_and_variance();
+        let variance = variance / (step * step).max(1.0);
+        let both = 2.0 * pairs as Real * variance;
+        variance < FEW_LEVELS && squares > both * (1.0 - OPPOSED)
     }
 
     /// Values that stay for longer than chance, or a slow sensor, allows.
@@ -251,7 +277,8 @@ impl SampleFaults {
         } else {
             let (chance, relative) = smooth([one, two]);
             let error = sqrt(none + chance * chance * relative);
-            two >= 60.0 && two >= 0.3 * one && none > 1.5 * chance && none - chance > 5.0 * error
+            let is_more = none > 1.5 * chance && none - chance > 5.0 * error;
+            two >= 60.0 && two >= 0.3 * one && is_more && !self.is_pulsed()
         };
         // Zeros at an end of the range are clipped.
         let [high, low] = self.ends.each_ref().map(End::value);
@@ -265,26 +292,29 @@ impl SampleFaults {
     }
 
     fn repeated(&self, joint: Option<&JointRepeats>, repeats: &Repeats) -> Reason {
-        let runs = match joint {
-            Some(joint) if joint.repeats().told => &joint.runs,
-            _ => &self.runs,
-        };
-        let samples = self.samples;
-        let repeated = real(repeats.share * samples as Real) as u64;
-        let changes = samples.saturating_sub(repeated);
-        // A sensor that is slower by the same factor all the time leaves runs of nearly the same length.
-        let [first, ..] = runs.reached;
-        let regular = repeats.share >= 0.1
-            && first.saturating_mul(100) >= runs.zeros.min(changes).saturating_mul(97);
-        let whole = (2..=4_u8).find(|&times| {
-            let all = changes.saturating_mul(times.into());
-            regular && all.abs_diff(samples).saturating_mul(200) < samples
-        });
-        Reason::Repeated {
-            times: whole.unwrap_or(u8::from(regular)),
-            changes,
-            samples,
+        match joint {
+            Some(joint) if joint.repeats().told => joint.reason(repeats, self.samples),
+            _ => repeated(&self.runs, repeats, self.samples),
         }
+    }
+}
+
+/// The reason why a record with these repeats is invalid.
+fn repeated(runs: &ZeroRuns, repeats: &Repeats, samples: u64) -> Reason {
+    let repeated = real(repeats.share * samples as Real) as u64;
+    let changes = samples.saturating_sub(repeated);
+    // A sensor that is slower by the same factor all the time leaves runs of nearly the same length.
+    let [first, ..] = runs.reached;
+    let regular = repeats.share >= 0.1
+        && first.saturating_mul(100) >= runs.zeros.min(changes).saturating_mul(97);
+    let whole = (2..=4_u8).find(|&times| {
+        let all = changes.saturating_mul(times.into());
+        regular && all.abs_diff(samples).saturating_mul(200) < samples
+    });
+    Reason::Repeated {
+        times: whole.unwrap_or(u8::from(regular)),
+        changes,
+        samples,
     }
 }
 
@@ -404,6 +434,34 @@ impl JointRepeats {
         sum
     }
 
+    /// The reason why a record of so many samples with these repeats of all axes is invalid.
+    pub(crate) fn reason(&self, repeats: &Repeats, samples: u64) -> Reason {
+        repeated(&self.runs, repeats, samples)
+    }
+
+    /// The share of samples in which each axis repeats.
+    pub(crate) fn shares_of_axes(&self) -> [Real; 3] {
+        let [_, x, y, xy, z, xz, yz, all] = self.cells.map(|number| number as Real);
+        let pairs = self.pairs().max(1) as Real;
+        [x + xy + xz, y + xy + yz, z + xz + yz].map(|some| (some + all) / pairs)
+    }
+
+    /// How often an axis repeats, all axes together.
+    fn repeating_axes(&self) -> u64 {
+        let each = numbered(self.cells.iter()).map(|(axes, &samples)| {
+            let axes: u64 = axes.count_ones().into();
+            axes.saturating_mul(samples)
+        });
+        each.fold(0, u64::saturating_add)
+    }
+
+    /// Whether axes are as they were two samples before more often than as they were one sample before. So are counts of pulses of an
+    /// angle, whose neighbours are not independent, so that their steps say nothing of repeats.
+    pub(crate) fn is_alternating(&self) -> bool {
+        let (repeated, returned) = (self.repeating_axes() as Real, self.returned as Real);
+        returned - repeated > 4.0 * sqrt(returned + repeated)
+    }
+
     /// The share of samples in which all axes repeat, beyond chance.
     ///
     /// A sample in which an axis moves is one of the sensor, and such samples show how often each of the other axes
@@ -457,7 +515,9 @@ impl JointRepeats {
         };
         let is_common = common >= 2.5 || dependence >= 11.0;
         let own = if is_common { 0.0 } else { independent };
-        let z = if all >= 16.0 {
+        let z = if self.is_alternating() {
+            own
+        } else if all >= 16.0 {
             own.max(pairwise).max(smooth)
         } else {
             0.0

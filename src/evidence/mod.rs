@@ -8,4 +8,5 @@ pub mod faults;
 pub mod kurtosis;
 pub mod motion;
 pub(crate) mod observed;
+mod reads;
 pub(crate) mod record;

@@ -8,7 +8,7 @@ pub(crate) mod ends;
 mod hole;
 mod spread;
 pub(crate) mod steps;
-mod zero_runs;
+pub(crate) mod zero_runs;
 
 pub(crate) use hole::Hole;
 
@@ -109,6 +109,7 @@ impl Default for SampleFaults {
 /// are coarse; that three do at once says much.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "storage", derive(serde::Serialize, serde::Deserialize))]
 pub struct JointRepeats {
     /// The number of samples in which the axes repeat whose bits are set in the place.
     pub(crate) cells: [u64; 8],
@@ -116,6 +117,8 @@ pub struct JointRepeats {
     pub(crate) third: [u64; 2],
     /// Runs of samples in which all axes repeat.
     pub(crate) runs: ZeroRuns,
+    /// The number of axes that are as they were two samples before.
+    pub(crate) returned: u64,
 }
 
 impl JointRepeats {
@@ -125,15 +128,30 @@ impl JointRepeats {
             cells: [0; 8],
             third: [0; 2],
             runs: ZeroRuns::NEW,
+            returned: 0,
         }
     }
 
     /// Adds what [`SampleFaults::push`] returned for each axis. Behind a gap, this is a gap.
     #[inline]
     pub fn push(&mut self, steps: [Option<u8>; 3]) {
-        let [Some(x), Some(y), Some(z)] = steps else {
-            return self.runs.push(false);
-        };
+        match steps {
+            [Some(x), Some(y), Some(z)] => self.push_some([x, y, z]),
+            _ => self.runs.push(false),
+        }
+    }
+
+    /// Adds the steps of a sample in which no axis repeats.
+    #[inline(always)]
+    pub(crate) fn push_none(&mut self) {
+        let [none, ..] = &mut self.cells;
+        *none = none.saturating_add(1);
+        self.runs.push(false);
+    }
+
+    /// Adds the steps of a sample.
+    #[inline(never)]
+    pub(crate) fn push_some(&mut self, [x, y, z]: [u8; 3]) {
         let cell = usize::from(x == 0) | usize::from(y == 0) << 1 | usize::from(z == 0) << 2;
         if let Some(cell) = self.cells.get_mut(cell) {
             *cell = cell.saturating_add(1);
@@ -146,6 +164,26 @@ impl JointRepeats {
                 *third = third.saturating_add(1);
             }
         }
+    }
+}
+
+impl JointRepeats {
+    /// Notes which axes are as they were two samples before, each by a 1.
+    #[inline(never)]
+    pub(crate) fn return_to(&mut self, same: [u8; 3]) {
+        let [x, y, z] = same;
+        let all = x.wrapping_add(y).wrapping_add(z);
+        self.returned = self.returned.saturating_add(all.into());
+    }
+
+    /// Adds what was counted in another record.
+    pub(crate) fn merge(&mut self, other: &Self) {
+        let pairs = self.cells.iter_mut().zip(&other.cells);
+        for (own, other) in pairs.chain(self.third.iter_mut().zip(&other.third)) {
+            *own = own.saturating_add(*other);
+        }
+        self.runs.merge(&other.runs);
+        self.returned = self.returned.saturating_add(other.returned);
     }
 }
 

@@ -12,4 +12,5 @@ pub(crate) mod fourth_moments;
 pub mod integrity;
 pub mod octave;
 pub mod queue;
+pub(crate) mod reads;
 pub(crate) mod square_sum;

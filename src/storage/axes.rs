@@ -8,7 +8,7 @@
 //! | content | type |
 //! |---|---|
 //! | number of octaves, axes, covariates, self-tests | 4 × u8 |
-//! | parts: 1 for a gate, plus 2 for fourth moments, plus 4 for the course | u8 |
+//! | parts: 1 for a gate, plus 2 for fourth moments, plus 4 for the course, plus 8 for the reads | u8 |
 //! | spectrum: number of blocks of a segment, number of levels; zeros without one | u16, u8 |
 //! | samples; gaps, including one at the end of the snapshot | 2 × u64 |
 //! | for each octave `m = 1, 2, 4, …`: number of differences, the same for all axes and covariates | u64 |
@@ -21,6 +21,7 @@
 //! | and for each level, shortest blocks first: number of segments | u32 |
 //! | and for each bin, if there are segments: Σ P and Σ P² over the segments | 2 × f32 |
 //! | and with the course: its blocks, as `course::stored` says | |
+//! | with reads, which earlier snapshots lack: the structure `reads::stored::Stored` | |
 //! | losses | u64 |
 //! | with a gate: samples left out, then for each axis the integrity of all samples | u64, … |
 //! | for each self-test: plan, next look, limits kept, verdict | |
@@ -39,6 +40,7 @@ use crate::{
         course::Course,
         cross_sums::ProductSum,
         octave::{Accumulator, Bridged, OctaveSum},
+        reads::Reads,
         square_sum::SquareSum,
     },
     self_test::{self, SelfTest},
@@ -49,6 +51,9 @@ const VERSION: u8 = 4;
 
 /// The version for a record with gaps that were filled.
 const BRIDGED_VERSION: u8 = 5;
+
+/// The bit of the parts that says that the reads follow.
+const WITH_READS: u8 = 8;
 
 /// The largest number of bytes that the integrity of an axis takes.
 const INTEGRITY: usize = 520;
@@ -106,7 +111,8 @@ where
             0
         };
         let axis = sums + INTEGRITY + moments + products + seen + spectrum + course;
-        let head = 5 + 4 + (4 + OCTAVES) * LONGEST + LONGEST_BRIDGED;
+        let head =
+            Reads::<AXES>::LONGEST_STORED + 5 + 4 + (4 + OCTAVES) * LONGEST + LONGEST_BRIDGED;
         head + AXES * axis + COVARIATES * sums + self_tests * self_test::LONGEST + OVERHEAD
     }
 
@@ -118,7 +124,8 @@ where
             self_tests: self_tests as u8,
             kept: u8::from(Self::HAS_GATE)
                 + 2 * u8::from(Self::HAS_MOMENTS)
-                + 4 * u8::from(Self::HAS_COURSE),
+                + 4 * u8::from(Self::HAS_COURSE)
+                + WITH_READS,
         }
     }
 
@@ -185,6 +192,7 @@ where
                 writer.push_with(|rest| course.write(rest))?;
             }
         }
+        writer.push(&self.kept.reads.stored())?;
         writer.push(&self.losses)?;
         if let Some(gate) = self.gate.gate() {
             writer.push(&gate.left_out())?;
@@ -262,13 +270,15 @@ where
             }
         }
         let mut reader = Reader(payload);
-        let parts: Parts = reader.take()?;
+        let mut parts: Parts = reader.take()?;
         if usize::from(parts.octaves) != OCTAVES {
             return Err(Error::WrongOctaves {
                 found: parts.octaves.into(),
                 wanted: OCTAVES,
             });
         }
+        let has_reads = parts.kept & WITH_READS > 0;
+        parts.kept |= WITH_READS;
         if parts != Self::parts(self_tests.len()) {
             return Err(Error::OtherParts);
         }
@@ -293,6 +303,10 @@ where
             if let Some(course) = axis.course.course_mut() {
                 reader.0 = course.read(reader.0).ok_or(Error::Impossible)?;
             }
+        }
+        if has_reads {
+            let rest = self.kept.reads.restore(reader.0);
+            reader.0 = rest.ok_or(Error::Impossible)?;
         }
         self.losses = reader.take()?;
         if let Some(gate) = self.gate.gate_mut() {

@@ -2,7 +2,7 @@
 
 use super::{Places, Repeats};
 use allanite::{
-    faults::{JointRepeats, SampleFaults},
+    faults::{JointRepeats, Reads, SampleFaults},
     integrity::Reason,
 };
 
@@ -29,8 +29,8 @@ pub(super) struct Plan {
 pub(super) struct Faults {
     plan: Plan,
     axes: Vec<SampleFaults>,
-    /// Those of every three axes, if there are only whole sensors.
-    joint: Vec<JointRepeats>,
+    /// What every three axes show together, if there are only whole sensors.
+    sensors: Vec<Reads>,
     /// Which rows repeat the one before: of every sensor, or of every axis.
     places: Vec<Places>,
     /// The last row, unless a gap follows it.
@@ -50,7 +50,7 @@ impl Faults {
             axes: (0..axes)
                 .map(|axis| SampleFaults::with_zero(zero(axis)))
                 .collect(),
-            joint: vec![JointRepeats::new(); sensors],
+            sensors: vec![Reads::new(); sensors],
             places: vec![Places::default(); if sensors > 0 { sensors } else { axes }],
             last: Vec::new(),
             rows: 0,
@@ -80,20 +80,20 @@ impl Faults {
         if self.plan.left_out.is_some() {
             self.drop_repeats(columns);
         }
-        if self.joint.is_empty() {
+        if self.sensors.is_empty() {
             return columns[..axes]
                 .iter()
                 .enumerate()
                 .for_each(|(axis, counts)| self.push(axis, counts));
         }
-        let sensors = self.axes.as_chunks_mut::<SENSOR>().0.iter_mut();
+        let axes = self.axes.as_chunks_mut::<SENSOR>().0.iter_mut();
         let counts = columns.as_chunks::<SENSOR>().0;
-        let joint = self.joint.iter_mut().zip(&mut self.places);
-        for ((axes, (joint, places)), [x, y, z]) in sensors.zip(joint).zip(counts) {
+        let sensors = self.sensors.iter_mut().zip(&mut self.places);
+        for ((axes, (reads, places)), [x, y, z]) in axes.zip(sensors).zip(counts) {
             let [of_x, of_y, of_z] = axes;
             for ((&x, &y), &z) in x.iter().zip(y).zip(z) {
                 let steps = [of_x.push(x), of_y.push(y), of_z.push(z)];
-                joint.push(steps);
+                reads.push_steps([x, y, z], steps);
                 places.push(steps == [Some(0); SENSOR]);
             }
         }
@@ -125,20 +125,23 @@ impl Faults {
         self.last.clear();
         self.axes.iter_mut().for_each(SampleFaults::gap);
         self.places.iter_mut().for_each(Places::gap);
-        let behind_gap = [None; SENSOR];
-        self.joint
-            .iter_mut()
-            .for_each(|joint| joint.push(behind_gap));
+        self.sensors.iter_mut().for_each(Reads::gap);
     }
 
     fn of_axis(&self, axis: usize) -> (&SampleFaults, Option<&JointRepeats>) {
-        (&self.axes[axis], self.joint.get(axis / SENSOR))
+        let reads = self.sensors.get(axis / SENSOR);
+        (&self.axes[axis], reads.map(Reads::joint))
     }
 
     /// Why the curve of an axis is not valid. How many samples repeat is told by their places, where these are regular.
     pub(super) fn verdict(&self, axis: usize) -> Option<Reason> {
         let (faults, joint) = self.of_axis(axis);
-        let reason = faults.verdict(joint)?;
+        let reads = self.sensors.get(axis / SENSOR);
+        let reads = reads.and_then(Reads::verdict);
+        let own = || faults.verdict(joint).or(reads);
+        // Reads without an answer look like many things that are not there.
+        let unanswered = reads.filter(|reason| matches!(reason, Reason::Unanswered { .. }));
+        let reason = unanswered.or_else(own)?;
         let Reason::Repeated { times, samples, .. } = reason else {
             return Some(reason);
         };
@@ -151,7 +154,7 @@ impl Faults {
     }
 
     fn share_by_places(&self, axis: usize, counted: &allanite::faults::Repeats) -> Option<f64> {
-        let place = if self.joint.is_empty() {
+        let place = if self.sensors.is_empty() {
             axis
         } else {
             axis / SENSOR
@@ -174,9 +177,10 @@ impl Faults {
         let own = self.axes.iter().map(|faults| faults.repeats(None));
         // An axis that never changes repeats whatever the others do.
         let own = own.filter(|repeats| repeats.chance < 1.0);
-        let all: Vec<_> = match self.joint.is_empty() {
+        let joint = self.sensors.iter().map(Reads::joint);
+        let all: Vec<_> = match self.sensors.is_empty() {
             true => own.collect(),
-            false => self.joint.iter().map(JointRepeats::repeats).collect(),
+            false => joint.map(JointRepeats::repeats).collect(),
         };
         let shares = all.iter().map(|repeats| repeats.share);
         let by_places = all.first().and_then(|first| self.share_by_places(0, first));

@@ -32,6 +32,10 @@ pub enum AllaniteReason {
     Misread = 11,
     /// The noise changed, as by another range of the sensor.
     Changed = 12,
+    /// Samples have one number on all axes, as a bus on which no sensor answers gives them.
+    Unanswered = 13,
+    /// Blocks of samples are there a second time, as a buffer that was not refilled leaves them.
+    Stale = 14,
 }
 
 impl AllaniteReason {
@@ -49,6 +53,8 @@ impl AllaniteReason {
             Some(Reason::DeadBand { .. }) => Self::DeadBand,
             Some(Reason::Misread { .. }) => Self::Misread,
             Some(Reason::Changed { .. }) => Self::Changed,
+            Some(Reason::Unanswered { .. }) => Self::Unanswered,
+            Some(Reason::Stale { .. }) => Self::Stale,
             Some(_) => Self::Other,
         }
     }

@@ -11,6 +11,7 @@ use crate::record::{
     cross_sums::CrossSums,
     integrity::{Integrity, InvalidLimit, Limits},
     octave::{Accumulator, Observer, bridge::Filling},
+    reads::Reads,
 };
 
 /// The sums of all axes and covariates. They all receive the same samples and gaps, so that all results
@@ -31,6 +32,8 @@ pub(crate) struct AxesSums<
     pub(crate) axes: [AxisSums<OCTAVES, COVARIATES, M, S, T>; AXES],
     /// One accumulator for each covariate, shared by all axes.
     pub(crate) covariates: [Accumulator<OCTAVES>; COVARIATES],
+    /// What a reader made of the samples.
+    pub(crate) reads: Reads<AXES>,
 }
 
 /// The sums of one axis.
@@ -147,6 +150,7 @@ where
     pub(crate) const NEW: Self = Self {
         axes: [const { AxisSums::NEW }; AXES],
         covariates: [const { Accumulator::new() }; COVARIATES],
+        reads: Reads::new(),
     };
 
     pub(crate) fn set_limits(&mut self, limits: &'static Limits) -> Result<(), InvalidLimit> {
@@ -170,6 +174,9 @@ where
 
     #[inline(always)]
     fn sum(&mut self, sample: &Sample<AXES, COVARIATES>, is_measured: bool) {
+        if is_measured {
+            self.reads.push(sample.counts);
+        }
         for (axis, &count) in self.axes.iter_mut().zip(&sample.counts) {
             if is_measured {
                 axis.integrity.push(count);
@@ -228,6 +235,7 @@ where
             axis.integrity.gap();
             axis.course.gap(known);
         }
+        self.reads.gap();
         let mut axes = self
             .axes
             .each_mut()
@@ -260,6 +268,7 @@ where
             axis.course.gap(missing);
         }
         self.covariates.iter_mut().for_each(Accumulator::gap);
+        self.reads.gap();
     }
 
     pub(crate) fn add_missing(&mut self, samples: u64) {
@@ -285,5 +294,6 @@ where
         for (own, other) in self.covariates.iter_mut().zip(&other.covariates) {
             own.merge(other);
         }
+        self.reads.merge(&other.reads);
     }
 }

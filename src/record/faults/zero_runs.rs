@@ -3,6 +3,7 @@
 /// Runs of differences that are zero.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "storage", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct ZeroRuns {
     present: u32,
     pub(crate) longest: u32,
@@ -33,6 +34,24 @@ impl ZeroRuns {
         } else {
             self.present = 0;
         }
+    }
+
+    pub(super) fn merge(&mut self, other: &Self) {
+        self.longest = self.longest.max(other.longest);
+        for (own, other) in self.reached.iter_mut().zip(&other.reached) {
+            *own = own.saturating_add(*other);
+        }
+        self.zeros = self.zeros.saturating_add(other.zeros);
+        self.long = self.long.saturating_add(other.long);
+    }
+
+    /// Whether so many samples can have left these counts, and no run goes on.
+    #[cfg(feature = "storage")]
+    pub(crate) fn is_possible(&self, samples: u64) -> bool {
+        let mut parts = self.reached.iter().chain([&self.zeros, &self.long]);
+        self.present == 0
+            && u64::from(self.longest) <= samples
+            && parts.all(|part| *part <= samples)
     }
 
     fn repeat(&mut self) {

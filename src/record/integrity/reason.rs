@@ -26,6 +26,22 @@ pub enum Reason {
         /// Samples of the record.
         samples: u64,
     },
+    /// Samples have one number on all axes, more often than chance explains, as a bus on which no sensor answers gives them.
+    Unanswered {
+        /// Samples with one number on all axes.
+        reads: u64,
+        /// Samples of the record.
+        samples: u64,
+    },
+    /// Blocks of samples are there a second time, as a buffer that was not refilled leaves them.
+    Stale {
+        /// Samples that were there before; at least.
+        stale: u64,
+        /// The number of samples from one to the same one, up to 128.
+        distance: u16,
+        /// Samples of the record.
+        samples: u64,
+    },
     /// The noise is below half a count, so that rounding is no noise that adds. The variance of short
     /// averaging times then follows from where between two counts the constant offset lies.
     Coarse {
@@ -147,6 +163,20 @@ impl core::fmt::Display for Reason {
                      give that rate and leave the repeated samples out"
                 )
             }
+            Self::Unanswered { reads, samples } => write!(
+                f,
+                "{reads} of {samples} samples have one number on all axes, as a bus without an answer gives them; check \
+                 the bus and the status of each read, and leave such samples out as gaps"
+            ),
+            Self::Stale {
+                stale,
+                distance,
+                samples,
+            } => write!(
+                f,
+                "at least {stale} of {samples} samples are there a second time, {distance} samples after the first, as a \
+                 buffer that was not refilled leaves them; read each half of the buffer once, when it is full"
+            ),
             Self::Coarse { per_mille } => write!(
                 f,
                 "the noise is below half a count: the mean square of the differences of neighbouring \

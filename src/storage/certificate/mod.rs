@@ -42,7 +42,8 @@
 //! A reason is 0 stuck (longest run u32, changes u64, samples u64), 1 railed (hits u64, samples u64),
 //! 2 spiked (spikes u64, percent u8), 3 moved (motions u64, cluster u16, percent u8), 4 missing (missing u64,
 //! sent u64), 5 left out (left out u64, samples u64), 6 repeated (times u8, changes u64, samples u64), 7 coarse
-//! (per mille u16), 8 dead band (zeros u64, samples u64), 9 misread (bits u8) or 10 changed (after u64, percent u16).
+//! (per mille u16), 8 dead band (zeros u64, samples u64), 9 misread (bits u8), 10 changed (after u64, percent u16),
+//! 11 unanswered (reads u64, samples u64) or 12 stale (stale u64, distance u16, samples u64).
 //!
 //! Every number is checked when a certificate is read, by itself and against the others: intervals contain their values,
 //! a doubt is one about an effect of the model, bands lie below half of the sample rate, and events within the duration.

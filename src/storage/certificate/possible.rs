@@ -209,5 +209,7 @@ fn is_possible_verdict(verdict: Verdict) -> bool {
         Reason::Misread { bits } => bits <= 32,
         Reason::Coarse { per_mille } => per_mille < 1000,
         Reason::Changed { percent, .. } => percent != 100,
+        Reason::Unanswered { reads, samples } => reads <= samples,
+        Reason::Stale { stale, samples, .. } => stale <= samples,
     }
 }

@@ -27,6 +27,8 @@ pub(crate) enum WireReason {
     DeadBand(u64, u64),
     Misread(u8),
     Changed(u64, u16),
+    Unanswered(u64, u64),
+    Stale(u64, u16, u64),
 }
 
 impl From<Option<Verdict>> for WireVerdict {
@@ -83,6 +85,12 @@ impl From<Reason> for WireReason {
             Reason::DeadBand { zeros, samples } => Self::DeadBand(zeros, samples),
             Reason::Misread { bits } => Self::Misread(bits),
             Reason::Changed { after, percent } => Self::Changed(after, percent),
+            Reason::Unanswered { reads, samples } => Self::Unanswered(reads, samples),
+            Reason::Stale {
+                stale,
+                distance,
+                samples,
+            } => Self::Stale(stale, distance, samples),
         }
     }
 }
@@ -113,6 +121,12 @@ impl From<WireReason> for Reason {
             WireReason::DeadBand(zeros, samples) => Self::DeadBand { zeros, samples },
             WireReason::Misread(bits) => Self::Misread { bits },
             WireReason::Changed(after, percent) => Self::Changed { after, percent },
+            WireReason::Unanswered(reads, samples) => Self::Unanswered { reads, samples },
+            WireReason::Stale(stale, distance, samples) => Self::Stale {
+                stale,
+                distance,
+                samples,
+            },
         }
     }
 }

@@ -439,6 +439,12 @@ impl JointRepeats {
         repeated(&self.runs, repeats, samples)
     }
 
+    /// The share of samples in which all axes repeat.
+    pub(crate) fn share_of_all(&self) -> Real {
+        let [.., all] = self.cells;
+        all as Real / self.pairs().max(1) as Real
+    }
+
     /// The share of samples in which each axis repeats.
     pub(crate) fn shares_of_axes(&self) -> [Real; 3] {
         let [_, x, y, xy, z, xz, yz, all] = self.cells.map(|number| number as Real);
@@ -446,19 +452,10 @@ impl JointRepeats {
         [x + xy + xz, y + xy + yz, z + xz + yz].map(|some| (some + all) / pairs)
     }
 
-    /// How often an axis repeats, all axes together.
-    fn repeating_axes(&self) -> u64 {
-        let each = numbered(self.cells.iter()).map(|(axes, &samples)| {
-            let axes: u64 = axes.count_ones().into();
-            axes.saturating_mul(samples)
-        });
-        each.fold(0, u64::saturating_add)
-    }
-
     /// Whether axes are as they were two samples before more often than as they were one sample before. So are counts of pulses of an
     /// angle, whose neighbours are not independent, so that their steps say nothing of repeats.
     pub(crate) fn is_alternating(&self) -> bool {
-        let (repeated, returned) = (self.repeating_axes() as Real, self.returned as Real);
+        let [repeated, returned] = self.returned.map(real);
         returned - repeated > 4.0 * sqrt(returned + repeated)
     }
 

@@ -6,7 +6,7 @@ use crate::{
         math::sqrt,
         real::{Real, real},
     },
-    record::integrity::Reason,
+    record::{integrity::Reason, reads::SAMPLED},
 };
 
 /// The number of samples from which a record is judged.
@@ -22,7 +22,7 @@ const SURE: Real = 4.0;
 const TOGETHER: Real = 3.0;
 /// The bits of surprise of a sample below which nothing is known, and those below which pulses may be periodic.
 const LEAST_BITS: u32 = 2;
-const PERIODIC: u32 = 8;
+const PERIODIC: u32 = 7;
 /// The largest share of reads without an answer, and of stale samples: more is a sensor that is stuck, and a line with a period of whole
 /// samples.
 const MOST: Real = 0.3;
@@ -37,10 +37,6 @@ impl<const AXES: usize> Reads<AXES> {
         self.unanswered().or_else(second)
     }
 
-    fn samples(&self) -> u32 {
-        self.stale.runs.samples
-    }
-
     /// Samples with one number on all axes, far from the samples before, or more often 0 or −1 than by chance.
     fn unanswered(&self) -> Option<Reason> {
         let (samples, equal) = (self.samples(), &self.equal);
@@ -49,35 +45,47 @@ impl<const AXES: usize> Reads<AXES> {
         } else {
             0
         };
-        let none = equal
-            .at
-            .iter()
-            .filter_map(|cells| self.beyond_chance(cells));
-        let reads = none.max().unwrap_or(0).max(far);
+        let joint = self.joint();
+        let again = joint.share_of_all().min(0.95);
+        // Samples that repeat come in clumps.
+        let clump = (1.0 + again) / (1.0 - again);
+        let neighbours = (joint.shares_of_axes(), clump);
+        let values = equal.all.iter().zip(&equal.at);
+        let none =
+            values.filter(|(reads, cells)| self.is_beyond_chance(**reads, cells, neighbours));
+        let reads = none.map(|(reads, _)| *reads).max().unwrap_or(0).max(far);
         (samples >= JUDGED && reads > samples / ONE_IN).then_some(Reason::Unanswered {
             reads: reads.into(),
             samples: samples.into(),
         })
     }
 
-    /// The samples in which all axes have one value, if these are more than chance makes: `cells` says which axes have it. An axis is
-    /// there by chance as often as while another one is not. Motion that moves axes alike makes pairs as well, and the third axis is
-    /// there with them at most as often as its neighbours are equal.
-    fn beyond_chance(&self, cells: &[u32; 8]) -> Option<u32> {
+    /// Whether so many samples with one value on all axes are more than chance makes. `cells` says which axes have it, of one sample in
+    /// [`SAMPLED`]. An axis has it by chance as often as while another one has not. Motion that moves axes alike makes pairs as well, and
+    /// the third axis has the value with them at most as often as its neighbours are equal.
+    fn is_beyond_chance(
+        &self,
+        reads: u32,
+        cells: &[u32; 8],
+        (neighbours, clump): ([Real; 3], Real),
+    ) -> bool {
         let [_, x, y, xy, z, xz, yz, all] = cells.map(|number| real(number) + 0.5);
-        let [.., reads] = cells;
         let samples = real(self.samples());
-        let none = (samples - x - y - z - xy - xz - yz - all).max(0.5);
-        let there = [x + xy + xz, y + xy + yz, z + xz + yz];
+        if reads < FEWEST || real(reads) > MOST * samples {
+            return false;
+        }
+        let sampled = samples / real(SAMPLED);
+        let none = (sampled - x - y - z - xy - xz - yz - all).max(0.5);
         let any = none + x + y + z + xy + xz + yz;
-        // Samples in which another axis is not there.
+        // Samples in which another axis has it not.
         let [with_x, with_y, with_z] = [any - yz, any - xz, any - xy];
+        let there = [x + xy + xz, y + xy + yz, z + xz + yz];
         let [at_x, at_y, at_z] = there;
         let [of_x, of_y, of_z] = [at_x / with_x, at_y / with_y, at_z / with_z];
         // The relative variance of the chance.
         let unknown: Real = there.iter().map(|number| 1.0 / number).sum();
         let chance = of_x * of_y * of_z * samples;
-        let [equal_x, equal_y, equal_z] = self.repeats.shares_of_axes();
+        let [equal_x, equal_y, equal_z] = neighbours;
         let pairs = [
             (xy, of_x * of_y * (1.0 - of_z), equal_z),
             (xz, of_x * of_z * (1.0 - of_y), equal_y),
@@ -85,28 +93,29 @@ impl<const AXES: usize> Reads<AXES> {
         ];
         let mut common: Real = 0.0;
         for (pair, expected, equal) in pairs {
-            let (pair, expected) = (pair - 0.5, expected * samples);
+            let (pair, expected) = (pair - 0.5, expected * sampled);
             let excess = pair - expected;
             if excess > TOGETHER * sqrt(1.3 * (pair + expected) + 2.0) {
-                return None;
+                return false;
             }
             let equal = (1.5 * equal).clamp(0.02, 0.95);
-            common = common.max(excess.max(0.0) * equal / (1.0 - equal));
+            let all = excess.max(0.0) * equal / (1.0 - equal) * real(SAMPLED);
+            common = common.max(all);
         }
-        let error = sqrt(1.5 * (chance + common) + chance * chance * unknown + 2.0);
-        let is_sure = all - 0.5 - chance - common > SURE * error;
-        (*reads >= FEWEST && real(*reads) < MOST * samples && is_sure).then_some(*reads)
+        let error = sqrt(1.5 * clump * (chance + common) + chance * chance * unknown + 2.0);
+        real(reads) - chance - common > SURE * error
     }
 
     /// Repeats of all axes at once.
     fn repeated(&self) -> Option<Reason> {
-        let repeats = self.repeats.repeats();
+        let joint = self.joint();
+        let repeats = joint.repeats();
         let is_judged = self.samples() >= JUDGED && repeats.told;
-        is_judged.then(|| self.repeats.reason(&repeats, self.samples().into()))
+        is_judged.then(|| joint.reason(&repeats, self.samples().into()))
     }
 
     /// Blocks that are there twice, most of them at one distance.
-    pub(crate) fn stale(&self) -> Option<Reason> {
+    fn stale(&self) -> Option<Reason> {
         let runs = &self.stale.runs;
         let (distance, most) = runs.most()?;
         let needed = runs.needed()?;
@@ -114,7 +123,7 @@ impl<const AXES: usize> Reads<AXES> {
             return None;
         }
         // Pulses of an angle come back at the periods of their rate.
-        if self.repeats.is_alternating() && runs.bits() < PERIODIC {
+        if self.joint().is_alternating() && runs.bits() < PERIODIC {
             return None;
         }
         let is_one = most.runs.saturating_mul(10) >= runs.whole.saturating_mul(7);
@@ -123,12 +132,12 @@ impl<const AXES: usize> Reads<AXES> {
         let fewest = if AXES == 1 { of_one } else { of_several };
         let is_sure =
             most.runs >= fewest || most.longest.saturating_mul(10) >= needed.saturating_mul(17);
-        let share = real(most.samples) / real(runs.samples.max(1));
+        let share = real(most.samples) / real(self.samples().max(1));
         let is_stale = self.samples() >= JUDGED && is_one && is_whole && is_sure;
         (is_stale && share < MOST).then_some(Reason::Stale {
             stale: most.samples.into(),
             distance,
-            samples: runs.samples.into(),
+            samples: self.samples().into(),
         })
     }
 }

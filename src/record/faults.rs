@@ -1,8 +1,7 @@
 //! What a logger does to samples: it repeats them, holds values for a while, clips them, or cuts out a band.
 //!
-//! A [`SampleFaults`] watches an axis, and a [`JointRepeats`] the three axes of a sensor together. Both are apart from
-//! [`Integrity`](crate::integrity::Integrity), so that a device that does not ask for them pays nothing. `evidence`
-//! judges them.
+//! A [`SampleFaults`] watches an axis. It is apart from [`Integrity`](crate::integrity::Integrity), so that a device that does not ask
+//! for it pays nothing. A [`JointRepeats`] is what is kept of the three axes of a sensor together. `evidence` judges both.
 
 pub(crate) mod ends;
 mod hole;
@@ -71,7 +70,7 @@ impl SampleFaults {
         }
     }
 
-    /// Adds a count. Returns how many steps it is away from the one before, for [`JointRepeats::push`]: 0 if it repeats
+    /// Adds a count. Returns how many steps it is away from the one before, for [`Reads::push_steps`](super::reads::Reads::push_steps): 0 if it repeats
     /// it, and 4 from four steps on. `None` behind a gap.
     #[inline]
     pub fn push(&mut self, count: i32) -> Option<u8> {
@@ -105,8 +104,8 @@ impl Default for SampleFaults {
     }
 }
 
-/// Counts which of the three axes of a sensor repeat at the same time. That one axis repeats says little where counts
-/// are coarse; that three do at once says much.
+/// Counts which of the three axes of a sensor repeat at the same time: a part of [`Reads`](super::reads::Reads). That one axis repeats
+/// says little where counts are coarse; that three do at once says much.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "storage", derive(serde::Serialize, serde::Deserialize))]
@@ -117,41 +116,21 @@ pub struct JointRepeats {
     pub(crate) third: [u64; 2],
     /// Runs of samples in which all axes repeat.
     pub(crate) runs: ZeroRuns,
-    /// The number of axes that are as they were two samples before.
-    pub(crate) returned: u64,
+    /// Of some samples, the number of axes that are as they were one sample before, and two before.
+    pub(crate) returned: [u32; 2],
 }
 
 impl JointRepeats {
-    /// No samples yet.
-    pub const fn new() -> Self {
-        Self {
-            cells: [0; 8],
-            third: [0; 2],
-            runs: ZeroRuns::NEW,
-            returned: 0,
-        }
-    }
+    pub(super) const NEW: Self = Self {
+        cells: [0; 8],
+        third: [0; 2],
+        runs: ZeroRuns::NEW,
+        returned: [0; 2],
+    };
 
-    /// Adds what [`SampleFaults::push`] returned for each axis. Behind a gap, this is a gap.
-    #[inline]
-    pub fn push(&mut self, steps: [Option<u8>; 3]) {
-        match steps {
-            [Some(x), Some(y), Some(z)] => self.push_some([x, y, z]),
-            _ => self.runs.push(false),
-        }
-    }
-
-    /// Adds the steps of a sample in which no axis repeats.
-    #[inline(always)]
-    pub(crate) fn push_none(&mut self) {
-        let [none, ..] = &mut self.cells;
-        *none = none.saturating_add(1);
-        self.runs.push(false);
-    }
-
-    /// Adds the steps of a sample.
-    #[inline(never)]
-    pub(crate) fn push_some(&mut self, [x, y, z]: [u8; 3]) {
+    /// Adds the steps of a sample in which an axis repeats: 0 for an axis that does, and how many steps another one moves. Returns
+    /// whether all axes repeat.
+    pub(super) fn push(&mut self, [x, y, z]: [u8; 3]) -> bool {
         let cell = usize::from(x == 0) | usize::from(y == 0) << 1 | usize::from(z == 0) << 2;
         if let Some(cell) = self.cells.get_mut(cell) {
             *cell = cell.saturating_add(1);
@@ -164,33 +143,47 @@ impl JointRepeats {
                 *third = third.saturating_add(1);
             }
         }
+        cell == 7
     }
-}
 
-impl JointRepeats {
-    /// Notes which axes are as they were two samples before, each by a 1.
-    #[inline(never)]
-    pub(crate) fn return_to(&mut self, same: [u8; 3]) {
-        let [x, y, z] = same;
-        let all = x.wrapping_add(y).wrapping_add(z);
-        self.returned = self.returned.saturating_add(all.into());
+    /// The next sample does not go on with a run.
+    pub(super) fn end_run(&mut self) {
+        self.runs.push(false);
+    }
+
+    /// Compares the axes with what they were one sample before, and two before.
+    pub(super) fn compare(&mut self, counts: [i32; 3], last: [i32; 3], before: [i32; 3]) {
+        let equal = |[x, y, z]: [i32; 3], [x1, y1, z1]: [i32; 3]| {
+            u32::from(x == x1)
+                .wrapping_add(u32::from(y == y1))
+                .wrapping_add(u32::from(z == z1))
+        };
+        let [one, two] = &mut self.returned;
+        *one = one.saturating_add(equal(counts, last));
+        *two = two.saturating_add(equal(counts, before));
+    }
+
+    /// The same, of so many pairs of neighbours: with the samples in which no axis repeats.
+    pub(super) fn of(&self, pairs: u64) -> Self {
+        let mut whole = self.clone();
+        let [none, others @ ..] = &mut whole.cells;
+        let others = others
+            .iter()
+            .fold(0, |sum: u64, cell| sum.saturating_add(*cell));
+        *none = pairs.saturating_sub(others);
+        whole
     }
 
     /// Adds what was counted in another record.
-    pub(crate) fn merge(&mut self, other: &Self) {
+    pub(super) fn merge(&mut self, other: &Self) {
         let pairs = self.cells.iter_mut().zip(&other.cells);
         for (own, other) in pairs.chain(self.third.iter_mut().zip(&other.third)) {
             *own = own.saturating_add(*other);
         }
         self.runs.merge(&other.runs);
-        self.returned = self.returned.saturating_add(other.returned);
-    }
-}
-
-impl Default for JointRepeats {
-    /// No samples yet.
-    fn default() -> Self {
-        Self::new()
+        for (own, other) in self.returned.iter_mut().zip(&other.returned) {
+            *own = own.saturating_add(*other);
+        }
     }
 }
 

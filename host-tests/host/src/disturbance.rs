@@ -14,6 +14,9 @@ const MOST: usize = 5;
 /// A record of which more than this share would be left out is to be recorded again. Chosen by hand.
 const MOST_CUT: f64 = 0.5;
 
+/// The place of a change is known to so much of the time before it. Chosen by hand: a record has 32 blocks or more.
+const MARGIN: f64 = 0.04;
+
 /// Motion is a knock if it takes no longer, in seconds. Chosen by hand.
 const KNOCK_S: f64 = 5.0;
 
@@ -37,6 +40,9 @@ pub fn invalid(
             "{words}: the sensor runs at {rate} Hz, and the repeats make its noise look filtered; read it at its own rate, \
              or leave the repeats out, which `--repeats drop` does where it is certain which samples repeat"
         );
+    }
+    if let Reason::Changed { after, percent } = *reason {
+        return changed(after as f64 / rate_hz, f64::from(percent) / 100.0);
     }
     let mut text = reason.to_string();
     if unit.sensor() == Sensor::Accelerometer {
@@ -62,6 +68,25 @@ pub fn invalid(
         (false, false) => format!(", in axis {} too", disturbance.axis),
     };
     text + &format!(" (first at {} s{seen})", number(disturbance.at_s))
+}
+
+/// The noise is another one from a time on. Either part can be read alone.
+fn changed(at_s: f64, factor: f64) -> String {
+    let direction = if factor < 1.0 { "fell" } else { "rose" };
+    let step_s = step(MARGIN * at_s);
+    let time = |seconds: f64| {
+        let digits = (-step_s.log10()).ceil().max(0.0) as usize;
+        format!("{seconds:.digits$}s")
+    };
+    let before = ((1.0 - MARGIN) * at_s / step_s).floor() * step_s;
+    let behind = ((1.0 + MARGIN) * at_s / step_s).ceil() * step_s;
+    format!(
+        "the noise {direction} to {factor} of what it was, at about {} s, as another range, rate or filter of the sensor makes it; keep \
+         the settings of the sensor and record again, or read one part alone, with --to {} or --from {}",
+        number(at_s),
+        time(before),
+        time(behind)
+    )
 }
 
 /// The options that leave out what disturbed a record, and what that is. `None` where it is too much.

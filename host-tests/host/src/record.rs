@@ -1,7 +1,7 @@
 //! The curves of a log or of a curve file, with what was recorded beside them.
 
 use crate::curve_file::{AxisCurve, CurveFile};
-use allanite::{Curve, Real, integrity::Reason, motion};
+use allanite::{Curve, Real, course::Course, integrity::Reason, motion};
 use allanite_log::{
     Covariates, Evidence, Log, OCTAVES, Options,
     failure::{Failure, Place},
@@ -39,8 +39,8 @@ pub fn with_evidence(log: &Log) -> Result<Vec<(AxisCurve, Evidence)>, Failure> {
     ))
 }
 
-/// The axes of a record, each three of which are one sensor's if it has so many, with what their curves say together: whether the
-/// sensor moved all the time. Every record that is judged passes here; `compare` fits curves alone. `has_scale` is false where the unit is assumed.
+/// The axes of a record, each three of which are one sensor's if it has so many, with what their courses and their curves say: whether
+/// the noise changed, and whether the sensor moved all the time. Every record that is judged passes here; `compare` fits curves alone. `has_scale` is false where the unit is assumed.
 fn judged(
     axes: impl IntoIterator<Item = (AxisCurve, Evidence)>,
     has_scale: bool,
@@ -54,7 +54,9 @@ fn judged(
     for sensor in axes.chunks_mut(size) {
         let reason = moved(sensor, has_scale);
         for (_, evidence) in sensor {
-            evidence.invalid = evidence.invalid.or(reason);
+            // In the order in which a device asks.
+            let changed = || evidence.course.as_ref().and_then(Course::change);
+            evidence.invalid = evidence.invalid.or_else(changed).or(reason);
         }
     }
     axes

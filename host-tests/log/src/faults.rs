@@ -128,7 +128,7 @@ impl Faults {
         self.sensors.iter_mut().for_each(Reads::gap);
     }
 
-    fn of_axis(&self, axis: usize) -> (&SampleFaults, Option<&JointRepeats>) {
+    fn of_axis(&self, axis: usize) -> (&SampleFaults, Option<JointRepeats>) {
         let reads = self.sensors.get(axis / SENSOR);
         (&self.axes[axis], reads.map(Reads::joint))
     }
@@ -138,14 +138,14 @@ impl Faults {
         let (faults, joint) = self.of_axis(axis);
         let reads = self.sensors.get(axis / SENSOR);
         let reads = reads.and_then(Reads::verdict);
-        let own = || faults.verdict(joint).or(reads);
+        let own = || faults.verdict(joint.as_ref()).or(reads);
         // Reads without an answer look like many things that are not there.
         let unanswered = reads.filter(|reason| matches!(reason, Reason::Unanswered { .. }));
         let reason = unanswered.or_else(own)?;
         let Reason::Repeated { times, samples, .. } = reason else {
             return Some(reason);
         };
-        let share = self.share_by_places(axis, &faults.repeats(joint));
+        let share = self.share_by_places(axis, &faults.repeats(joint.as_ref()));
         Some(share.map_or(reason, |share| Reason::Repeated {
             times,
             changes: samples - (share * samples as f64).round() as u64,
@@ -180,7 +180,7 @@ impl Faults {
         let joint = self.sensors.iter().map(Reads::joint);
         let all: Vec<_> = match self.sensors.is_empty() {
             true => own.collect(),
-            false => joint.map(JointRepeats::repeats).collect(),
+            false => joint.map(|joint| joint.repeats()).collect(),
         };
         let shares = all.iter().map(|repeats| repeats.share);
         let by_places = all.first().and_then(|first| self.share_by_places(0, first));
@@ -214,7 +214,7 @@ impl Faults {
     /// The smallest share of repeats that can be told of an axis.
     pub(super) fn least(&self, axis: usize) -> f64 {
         let (faults, joint) = self.of_axis(axis);
-        faults.repeats(joint).least
+        faults.repeats(joint.as_ref()).least
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::noise::{butterworth, flicker, normal, normalised};
 use allanite::{
-    faults::{JointRepeats, SampleFaults},
+    faults::{JointRepeats, Reads, SampleFaults},
     integrity::Reason,
 };
 use allanite_host::simulate::Random;
@@ -33,11 +33,15 @@ pub enum Fault {
     DeadBand(i32),
     /// The same, and all other values move towards zero by as much.
     Threshold(i32),
+    /// All axes read this number, for a share of the record; or any one number, if there is none.
+    Unanswered(Option<i32>, f64),
+    /// A half of a buffer of two, of so many samples each, is not refilled once in so many times.
+    Stale(usize, usize),
 }
 
 impl Fault {
     /// The faults of the study.
-    pub const ALL: [Self; 27] = [
+    pub const ALL: [Self; 36] = [
         Self::Polled(1.02, 0.0),
         Self::Polled(1.02, 0.3),
         Self::Polled(1.05, 0.0),
@@ -65,6 +69,15 @@ impl Fault {
         Self::DeadBand(4),
         Self::Threshold(1),
         Self::Threshold(4),
+        Self::Unanswered(Some(0), 0.001),
+        Self::Unanswered(Some(0), 0.01),
+        Self::Unanswered(Some(-1), 0.003),
+        Self::Unanswered(None, 0.001),
+        Self::Unanswered(None, 0.01),
+        Self::Stale(8, 10),
+        Self::Stale(16, 100),
+        Self::Stale(32, 10),
+        Self::Stale(64, 100),
     ];
 
     /// Whether a finding is the right one. Values held by a burst are stuck as well.
@@ -76,6 +89,8 @@ impl Fault {
             Self::Stuck(_) => matches!(reason, Reason::Stuck { .. }),
             Self::Clipped(_) => matches!(reason, Reason::Railed { .. }),
             Self::DeadBand(_) | Self::Threshold(_) => matches!(reason, Reason::DeadBand { .. }),
+            Self::Unanswered(..) => matches!(reason, Reason::Unanswered { .. }),
+            Self::Stale(..) => matches!(reason, Reason::Stale { .. }),
         }
     }
 }
@@ -119,6 +134,8 @@ pub enum Resolution {
     Counts,
     /// Far below the noise.
     Fine,
+    /// Counts are the pulses of an angle since the last sample: a few levels, whose neighbours are opposed. Half of them have a dither.
+    Pulses,
 }
 
 /// What is told of records of one fault.
@@ -146,16 +163,16 @@ struct Record {
     sigma: f64,
 }
 
-/// Judges records of a fault: the first axis alone, and three axes together.
-pub fn study(fault: Fault, resolution: Resolution, records: u64, seed: u64) -> [Tally; 2] {
-    let judged: Vec<[One; 2]> = (0..records)
+/// Judges records of a fault: the first axis alone, three axes together, and three axes by what a device counts of them.
+pub fn study(fault: Fault, resolution: Resolution, records: u64, seed: u64) -> [Tally; 3] {
+    let judged: Vec<[One; 3]> = (0..records)
         .into_par_iter()
         .map(|record| {
             let mut random = Random::seed_from_u64(seed.wrapping_mul(1 << 32).wrapping_add(record));
             judge(fault, resolution, &mut random)
         })
         .collect();
-    [0, 1].map(|axes| {
+    [0, 1, 2].map(|axes| {
         let mut tally = Tally::default();
         for record in &judged {
             tally.add(fault, &record[axes]);
@@ -202,7 +219,7 @@ impl Tally {
     }
 }
 
-fn judge(fault: Fault, resolution: Resolution, random: &mut Random) -> [One; 2] {
+fn judge(fault: Fault, resolution: Resolution, random: &mut Random) -> [One; 3] {
     let record = record(fault, resolution, random);
     let counts = |axes: &[Vec<f64>; 3]| {
         axes.each_ref().map(|axis| {
@@ -217,18 +234,23 @@ fn judge(fault: Fault, resolution: Resolution, random: &mut Random) -> [One; 2] 
     });
     let (faulty, repeated) = spoilt(fault, &record, random);
     let mut axes = [(); 3].map(|()| SampleFaults::new());
-    let mut joint = JointRepeats::new();
+    let mut reads: Reads = Reads::new();
+    let mut first_reads = Reads::<1>::new();
     let mut places = [(); 2].map(|()| Places::default());
     let [x, y, z] = &faulty;
     for ((&x, &y), &z) in x.iter().zip(y).zip(z) {
         let [of_x, of_y, of_z] = &mut axes;
         let steps = [of_x.push(x), of_y.push(y), of_z.push(z)];
-        joint.push(steps);
+        reads.push_steps([x, y, z], steps);
+        first_reads.push([x]);
         let [first, all] = &mut places;
         first.push(steps[0] == Some(0));
         all.push(steps == [Some(0); 3]);
     }
+    let of_reads = [first_reads.verdict(), reads.verdict()];
     let one = |joint: Option<&JointRepeats>, number: usize| {
+        let of_reads = of_reads[usize::from(joint.is_some())];
+        let unanswered = of_reads.filter(|reason| matches!(reason, Reason::Unanswered { .. }));
         let repeats = axes[0].repeats(joint);
         let places = &places[usize::from(joint.is_some())];
         One {
@@ -237,7 +259,7 @@ fn judge(fault: Fault, resolution: Resolution, random: &mut Random) -> [One; 2] 
                 .fold(0.0, |most, &one| one.max(most)),
             verdicts: axes[..number]
                 .iter()
-                .map(|axis| axis.verdict(joint))
+                .map(|axis| unanswered.or_else(|| axis.verdict(joint)).or(of_reads))
                 .collect(),
             share: places.share(&repeats).unwrap_or(repeats.share),
             repeated,
@@ -245,7 +267,10 @@ fn judge(fault: Fault, resolution: Resolution, random: &mut Random) -> [One; 2] 
             noise: format!("{:?} {:.2}", record.colour, record.sigma),
         }
     };
-    [one(None, 1), one(Some(&joint), 3)]
+    let joint = reads.joint();
+    let mut device = one(Some(&joint), 3);
+    device.verdicts = vec![reads.verdict()];
+    [one(None, 1), one(Some(&joint), 3), device]
 }
 
 /// A record of the sensor, long enough for a fault that leaves samples out.
@@ -264,6 +289,9 @@ fn record(fault: Fault, resolution: Resolution, random: &mut Random) -> Record {
         random.random_range(0.0..TAU),
     ];
     let amplitude = random.random_range(0.3..2.0);
+    if resolution == Resolution::Pulses {
+        return pulses(random);
+    }
     let axes = [(); 3].map(|()| {
         let own = sigma * random.random_range(0.8..1.25);
         let offset = match fault {
@@ -282,6 +310,33 @@ fn record(fault: Fault, resolution: Resolution, random: &mut Random) -> Record {
         axes,
         colour,
         sigma,
+    }
+}
+
+/// The pulses of an angle since the last sample, of three axes that turn by less than one a sample.
+fn pulses(random: &mut Random) -> Record {
+    let size = 0.001 * 500_f64.powf(random.random_range(0.0..1.0));
+    let dither = match random.random_range(0..2) {
+        0 => 0.0,
+        _ => 0.05 * 10_f64.powf(random.random_range(0.0..1.0)),
+    };
+    let axes = [(); 3].map(|()| {
+        let turn = 0.05 * 20_f64.powf(random.random_range(0.0..1.0));
+        let turn = if random.random_range(0..2) == 0 { turn } else { -turn };
+        let mut angle: f64 = random.random_range(0.0..9.0);
+        let mut counted = angle.floor();
+        let step = |_| {
+            angle += turn + size * normal(random);
+            let before = counted;
+            counted = (angle + dither * normal(random)).floor();
+            counted - before
+        };
+        (0..SAMPLES).map(step).collect()
+    });
+    Record {
+        axes,
+        colour: Colour::White,
+        sigma: size,
     }
 }
 
@@ -385,6 +440,29 @@ fn spoilt(fault: Fault, record: &Record, random: &mut Random) -> ([Vec<i32>; 3],
         let rows = places.iter().map(|&place| axis[place].round() as i32);
         rows.collect::<Vec<_>>()
     });
+    match fault {
+        Fault::Unanswered(value, share) => {
+            for row in 0..SAMPLES {
+                if random.random_range(0.0..1.0) < share {
+                    let value = value.unwrap_or_else(|| random.random_range(-300..300));
+                    axes.iter_mut().for_each(|axis| axis[row] = value);
+                }
+            }
+        }
+        Fault::Stale(length, one_in) => {
+            let before = axes.clone();
+            for block in 2..SAMPLES / length {
+                if random.random_range(0..one_in) == 0 {
+                    let rows = block * length..(block + 1) * length;
+                    for (axis, before) in axes.iter_mut().zip(&before) {
+                        let first = rows.start - 2 * length;
+                        axis[rows.clone()].copy_from_slice(&before[first..first + length]);
+                    }
+                }
+            }
+        }
+        _ => {}
+    }
     let axis = &mut axes[0];
     match fault {
         Fault::Stuck(share) => {

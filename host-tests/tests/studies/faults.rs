@@ -8,7 +8,7 @@ const SEED: u64 = 77;
 
 #[test]
 fn records_without_a_fault_have_none() {
-    for resolution in [Resolution::Counts, Resolution::Fine] {
+    for resolution in [Resolution::Counts, Resolution::Fine, Resolution::Pulses] {
         for tally in study(Fault::None, resolution, 2000, SEED) {
             // 0.2 % of them at most, in a sample: 10 of 2000 have a probability below 1 % then.
             assert!(tally.otherwise.len() < 10, "{:?}", tally.otherwise);
@@ -21,14 +21,21 @@ fn records_without_a_fault_have_none() {
 fn repeats_are_told_with_the_rate_of_the_sensor() {
     for fault in Fault::ALL {
         let least = match fault {
-            Fault::Polled(..) | Fault::Repeated(_) | Fault::Bursts(_) => [0.0, 0.98],
-            Fault::Stuck(_) => [0.9, 0.9],
-            Fault::Clipped(level) if level < 2.5 => [0.88, 0.88],
-            Fault::Clipped(_) => [0.4, 0.4],
-            Fault::DeadBand(_) => [0.95, 0.95],
+            // A device sees repeats of all axes alone.
+            Fault::Polled(..) | Fault::Repeated(_) => [0.0, 0.98, 0.97],
+            Fault::Bursts(_) => [0.0, 0.98, 0.9],
+            Fault::Stuck(_) => [0.9, 0.9, 0.0],
+            Fault::Clipped(level) if level < 2.5 => [0.88, 0.88, 0.0],
+            Fault::Clipped(_) => [0.4, 0.4, 0.0],
+            Fault::DeadBand(_) => [0.95, 0.95, 0.0],
             // A step of a count is hard to tell from coarse noise: some 46 % are told, of 150 with a scatter of 4 %.
-            Fault::Threshold(1) => [0.3, 0.3],
-            Fault::Threshold(_) => [0.9, 0.9],
+            Fault::Threshold(1) => [0.3, 0.3, 0.0],
+            Fault::Threshold(_) => [0.9, 0.9, 0.0],
+            // One axis cannot tell. Near the mean such a read changes nothing, and is not seen.
+            Fault::Unanswered(Some(_), _) => [0.0, 0.5, 0.5],
+            Fault::Unanswered(None, _) => [0.0, 0.95, 0.95],
+            Fault::Stale(8, _) => [0.0, 0.8, 0.8],
+            Fault::Stale(..) => [0.0, 0.93, 0.93],
             Fault::None => unreachable!("a record without a fault"),
         };
         for (tally, least) in study(fault, Resolution::Counts, 200, SEED)

@@ -124,7 +124,11 @@ const FIGURES: [(&str, &str, &str); 26] = [
 
 const NOTE: &str = "QEMU counts instructions, not cycles";
 
-pub(crate) fn run(json: bool, update_budgets: bool) -> Result<()> {
+pub(crate) fn run(json: bool, update_budgets: bool, core: Option<&str>) -> Result<()> {
+    if let Some(core) = core {
+        println!("{:#}", budgets::measured_of(core)?);
+        return Ok(());
+    }
     if !json {
         setup::run()?;
     }

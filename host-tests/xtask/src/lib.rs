@@ -117,6 +117,9 @@ enum Task {
         /// with.
         #[arg(long, conflicts_with = "json")]
         update_budgets: bool,
+        /// Measure one core alone, such as Cortex-M4F, and print JSON.
+        #[arg(long, value_name = "NAME", conflicts_with_all = ["json", "update_budgets"])]
+        core: Option<String>,
     },
     /// Build the static library for C, and put it beside its header and a package of CMake.
     C {
@@ -216,7 +219,8 @@ impl CommandLine {
             Task::Bench {
                 json,
                 update_budgets,
-            } => bench::run(json, update_budgets),
+                core,
+            } => bench::run(json, update_budgets, core.as_deref()),
             Task::C {
                 octaves,
                 one_axis,

@@ -233,7 +233,7 @@ impl core::fmt::Display for Reason {
             Self::Changed { after, percent } => write!(
                 f,
                 "the noise changed to {percent} % of what it was after {after} samples, as another range, rate or \
-                 filter of the sensor makes it; keep these settings, and record again"
+                 filter of the sensor makes it; keep the settings of the sensor, and record again"
             ),
             Self::Missing { missing, sent } => write!(
                 f,

@@ -3,22 +3,22 @@
 use crate::list::numbered;
 
 /// The samples whose hashes are kept: the longest distance at which a block is recognised, and some before it.
-const RING: usize = 144;
+const RING: usize = 256;
 /// The longest distance at which a block is recognised, in samples.
 const FARTHEST: u16 = 128;
 /// Windows that are remembered. One in [`ENTERED`] windows is.
-const ENTRIES: usize = 64;
-const ENTERED: u32 = 4;
+const ENTRIES: usize = 32;
+const ENTERED: u32 = 8;
 /// The samples before a window that are compared when it is recognised.
-const BACK: u32 = 32;
+const BACK: u32 = 48;
 /// The distance at which equal samples are by chance. Slow noise makes them less often equal at longer ones.
 const ELSEWHERE: u16 = 11;
 /// The shortest distance of a block.
 const NEAREST: u16 = 8;
 /// The distances that are counted apart from each other.
 const DISTANCES: usize = 4;
-/// The samples from which it is known how often others are equal by chance.
-const LEARNT: u32 = 1000;
+/// The windows from which it is known how often others are equal by chance.
+const LEARNT: u32 = 120;
 /// The surprise, in bits, from which a run of equal samples is not by chance.
 const BITS: u32 = 32;
 
@@ -40,9 +40,9 @@ pub(crate) struct AtDistance {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "storage", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Runs {
-    /// Samples.
-    pub(crate) samples: u32,
-    /// Samples that equal the one [`ELSEWHERE`] before.
+    /// Windows that were looked up.
+    pub(crate) looked: u32,
+    /// Those of them whose last sample equals the one [`ELSEWHERE`] before.
     pub(crate) elsewhere: u32,
     /// Runs that are too long for chance, and those of them that have the length of a block.
     pub(crate) long: u32,
@@ -52,7 +52,7 @@ pub(crate) struct Runs {
 
 impl Runs {
     const NEW: Self = Self {
-        samples: 0,
+        looked: 0,
         elsewhere: 0,
         long: 0,
         whole: 0,
@@ -66,12 +66,12 @@ impl Runs {
 
     /// The bits by which a sample that equals another one surprises, at most those of a hash.
     pub(crate) const fn bits(&self) -> u32 {
-        match self.samples.checked_div(self.elsewhere.saturating_add(1)) {
+        match self.looked.checked_div(self.elsewhere.saturating_add(1)) {
             Some(ratio @ 1..) => {
-                if ratio.ilog2() < 16 {
+                if ratio.ilog2() < 8 {
                     ratio.ilog2()
                 } else {
-                    16
+                    8
                 }
             }
             _ => 0,
@@ -93,7 +93,7 @@ impl Runs {
         let Some(needed) = self.needed() else {
             return;
         };
-        if self.samples < LEARNT || distance < NEAREST || length < needed {
+        if self.looked < LEARNT || distance < NEAREST || length < needed {
             return;
         }
         self.long = self.long.saturating_add(1);
@@ -129,17 +129,19 @@ impl Runs {
             let is_free = own.distance == 0 && *own == AtDistance::default();
             let is_taken = (NEAREST..=FARTHEST).contains(&own.distance)
                 && own.runs > 0
-                && own.longest <= own.samples
-                && own.samples <= self.samples;
+                && own.longest <= own.samples;
             is_free || is_taken
         };
         let runs = self.distances.iter().map(|own| own.runs);
         let runs = runs.fold(0, u32::saturating_add);
-        self.whole <= self.long && runs <= self.whole && self.distances.iter().all(is_possible)
+        self.elsewhere <= self.looked
+            && self.whole <= self.long
+            && runs <= self.whole
+            && self.distances.iter().all(is_possible)
     }
 
     pub(crate) fn merge(&mut self, other: &Self) {
-        self.samples = self.samples.saturating_add(other.samples);
+        self.looked = self.looked.saturating_add(other.looked);
         self.elsewhere = self.elsewhere.saturating_add(other.elsewhere);
         self.long = self.long.saturating_add(other.long);
         self.whole = self.whole.saturating_add(other.whole);
@@ -161,12 +163,23 @@ impl AtDistance {
     }
 }
 
+/// The hash of some counts and another one.
+#[inline(always)]
+pub(super) const fn mix(hash: u32, count: i32) -> u32 {
+    hash.wrapping_add(count as u32).wrapping_mul(0x9E37_79B1)
+}
+
+/// Whether a window with this hash is remembered.
+const fn is_entered(mixed: u32) -> bool {
+    mixed.wrapping_shr(16).is_multiple_of(ENTERED)
+}
+
 /// A window that was seen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 struct Seen {
     tag: u16,
-    /// The low bits of the time at which it ended.
+    /// The low bits of the time of its last sample.
     time: u16,
 }
 
@@ -174,19 +187,14 @@ struct Seen {
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub(crate) struct Stale {
-    ring: [u16; RING],
-    /// The place in the ring of the next sample.
-    next: u16,
-    /// The samples since a gap, at most as many as the ring holds.
-    filled: u16,
-    /// The time, in samples.
-    time: u16,
+    /// A byte of the hash of each sample, at the low bits of its time.
+    ring: [u8; RING],
+    /// The same of the last four samples.
+    window: u32,
     /// The distance that is followed; 0 if none is.
     distance: u16,
     /// The samples of the present run.
     length: u32,
-    /// A byte of the hash of each of the last four samples.
-    window: u32,
     seen: [Seen; ENTRIES],
     pub(crate) runs: Runs,
 }
@@ -194,95 +202,78 @@ pub(crate) struct Stale {
 impl Stale {
     pub(super) const NEW: Self = Self {
         ring: [0; RING],
-        next: 0,
-        filled: 0,
-        time: 0,
+        window: 0,
         distance: 0,
         length: 0,
-        window: 0,
         seen: [Seen { tag: 0, time: 0 }; ENTRIES],
         runs: Runs::NEW,
     };
 
-    /// Adds a sample of all axes.
+    /// Adds the hash of a sample of all axes. `time` is the number of samples before it since a gap.
     #[inline(always)]
-    pub(super) fn push<const AXES: usize>(&mut self, counts: [i32; AXES]) {
-        let mixed =
-            |hash: u32, count: i32| hash.wrapping_add(count as u32).wrapping_mul(0x9E37_79B1);
-        let hash = counts.into_iter().fold(0, mixed);
+    pub(super) fn push(&mut self, time: u32, hash: u32) {
         // The upper bits depend on all bits of the counts.
-        let hash = hash >> 16;
-        self.runs.samples = self.runs.samples.saturating_add(1);
-        if self.before(ELSEWHERE) == hash as u16 && self.filled >= ELSEWHERE {
-            self.runs.elsewhere = self.runs.elsewhere.saturating_add(1);
+        let hash = hash >> 24;
+        if let Some(place) = self.ring.get_mut(time as usize % RING) {
+            *place = hash as u8;
         }
-        if self.distance > 0 {
-            self.follow(hash as u16);
-        }
-        if let Some(place) = self.ring.get_mut(usize::from(self.next)) {
-            *place = hash as u16;
-        }
-        self.next = self.next.wrapping_add(1);
-        if usize::from(self.next) >= RING {
-            self.next = 0;
-        }
-        self.filled = self
-            .filled
-            .saturating_add(u16::from(usize::from(self.filled) < RING));
-        self.time = self.time.wrapping_add(1);
-        self.window = self.window << 8 | hash & 0xff;
+        self.window = self.window << 8 | hash;
         let mixed = self.window.wrapping_mul(0x2C1B_3C6D);
-        if mixed.wrapping_shr(8).is_multiple_of(ENTERED) {
-            self.look(mixed);
+        if self.distance > 0 || is_entered(mixed) {
+            self.look(time, mixed);
         }
     }
 
-    /// The hash of the sample that lies so far before the next one.
-    #[inline(always)]
-    fn before(&self, distance: u16) -> u16 {
-        let place = match self.next.checked_sub(distance) {
-            Some(place) => place,
-            None => self.next.wrapping_add(RING as u16).wrapping_sub(distance),
+    /// The hash of the sample at a time, one of the last [`RING`] samples.
+    fn at(&self, time: u32) -> u8 {
+        self.ring.get(time as usize % RING).copied().unwrap_or(0)
+    }
+
+    /// Whether a sample equals the one so far before it. There is none before a gap.
+    fn is_again(&self, time: u32, distance: u16) -> bool {
+        let before = time.checked_sub(distance.into());
+        before.is_some_and(|before| self.at(before) == self.at(time))
+    }
+
+    /// Follows a run, looks whether the last four samples were there before, and remembers them.
+    #[inline(never)]
+    fn look(&mut self, time: u32, mixed: u32) {
+        if self.distance > 0 {
+            if self.is_again(time, self.distance) {
+                self.length = self.length.saturating_add(1);
+            } else {
+                self.runs.add(self.distance, self.length);
+                (self.distance, self.length) = (0, 0);
+            }
+        }
+        if !is_entered(mixed) {
+            return;
+        }
+        self.runs.looked = self.runs.looked.saturating_add(1);
+        let again = self.is_again(time, ELSEWHERE);
+        self.runs.elsewhere = self.runs.elsewhere.saturating_add(again.into());
+        let now = Seen {
+            tag: mixed as u16,
+            time: time as u16,
         };
-        self.ring.get(usize::from(place)).copied().unwrap_or(0)
-    }
-
-    /// Whether a sample goes on with the present run.
-    #[inline(never)]
-    fn follow(&mut self, hash: u16) {
-        if self.before(self.distance) == hash {
-            self.length = self.length.saturating_add(1);
-        } else {
-            self.runs.add(self.distance, self.length);
-            (self.distance, self.length) = (0, 0);
-        }
-    }
-
-    /// Looks whether the last four samples were there before, and remembers them.
-    #[inline(never)]
-    fn look(&mut self, mixed: u32) {
-        let (tag, time) = (mixed as u16, self.time);
-        let Some(seen) = self.seen.get_mut((mixed >> 26) as usize) else {
+        let Some(seen) = self.seen.get_mut((mixed >> 27) as usize) else {
             return;
         };
-        let distance = time.wrapping_sub(seen.time);
-        let is_same = seen.tag == tag;
-        *seen = Seen { tag, time };
-        if is_same && self.distance == 0 && (1..=FARTHEST).contains(&distance) {
-            self.begin(distance);
+        let before = core::mem::replace(seen, now);
+        let distance = now.time.wrapping_sub(before.time);
+        let is_same = before.tag == now.tag && (1..=FARTHEST).contains(&distance);
+        if is_same && self.distance == 0 {
+            self.begin(time, distance);
         }
     }
 
     /// Begins a run, with the samples that belong to it already.
     #[cold]
     #[inline(never)]
-    fn begin(&mut self, distance: u16) {
-        let reach = u32::from(self.filled.saturating_sub(distance)).min(BACK);
+    fn begin(&mut self, time: u32, distance: u16) {
         let mut length = 0;
-        let mut back = 1;
-        while length < reach && self.before(back) == self.before(back.saturating_add(distance)) {
+        while length < BACK && self.is_again(time.wrapping_sub(length), distance) {
             length = length.saturating_add(1);
-            back = back.saturating_add(1);
         }
         if length > 0 {
             (self.distance, self.length) = (distance, length);
@@ -291,9 +282,7 @@ impl Stale {
 
     /// The next sample does not adjoin the last one.
     pub(super) fn gap(&mut self) {
-        if self.filled > 0 {
-            *self = Self::with_runs(self.runs_at_gap());
-        }
+        *self = Self::with_runs(self.runs_at_gap());
     }
 
     /// What is counted after a gap at this place, which ends the present run.

@@ -1,7 +1,7 @@
 //! What survives of the reads of a record in a snapshot.
 
 use super::{
-    EqualAxes, LEARNT, Reads,
+    Earlier, EqualAxes, LEARNT, Reads,
     stale::{Runs, Stale},
 };
 use crate::record::faults::JointRepeats;
@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 /// The counts without what lies in the present stretch.
 #[derive(Serialize, Deserialize)]
 struct Stored {
+    earlier: Earlier,
     repeats: JointRepeats,
     equal: EqualAxes,
     runs: Runs,
@@ -22,8 +23,12 @@ impl<const AXES: usize> Reads<AXES> {
     /// What is stored: the state after a gap.
     pub(crate) fn stored(&self) -> impl Serialize + use<AXES> {
         let mut repeats = self.repeats.clone();
-        repeats.push([None; 3]);
+        repeats.end_run();
         Stored {
+            earlier: Earlier {
+                samples: self.samples(),
+                pairs: self.pairs(),
+            },
             repeats,
             equal: self.equal,
             runs: self.stale.runs_at_gap(),
@@ -38,6 +43,7 @@ impl<const AXES: usize> Reads<AXES> {
         }
         let stale = Stale::with_runs(stored.runs);
         *self = Self {
+            earlier: stored.earlier,
             repeats: stored.repeats,
             equal: stored.equal,
             stale,
@@ -50,34 +56,42 @@ impl<const AXES: usize> Reads<AXES> {
 impl Stored {
     fn is_possible(&self, axes: usize) -> bool {
         let Self {
+            earlier,
             repeats,
             equal,
             runs,
         } = self;
         // Counters of 32 bits stop at their largest number.
-        let samples = match runs.samples {
+        let samples = match earlier.samples {
             u32::MAX => u64::MAX,
             samples => samples.into(),
+        };
+        let sum = |cells: &[u32]| {
+            cells
+                .iter()
+                .fold(0, |sum: u64, cell| sum.saturating_add((*cell).into()))
         };
         let pairs = repeats
             .cells
             .iter()
             .fold(0, |sum: u64, cell| sum.saturating_add(*cell));
-        let of_three = axes == 3 || (pairs == 0 && *equal == EqualAxes::NEW);
-        let none = equal.at.iter().all(|cells| {
-            let sum = cells
-                .iter()
-                .fold(0, |sum: u64, cell| sum.saturating_add((*cell).into()));
-            sum <= samples
-        });
+        let of_three = axes == 3 || (*repeats == JointRepeats::NEW && *equal == EqualAxes::NEW);
+        let [none_repeats, ..] = repeats.cells;
+        let counts = none_repeats == 0 && pairs <= samples && earlier.pairs <= earlier.samples;
+        let [repeated, returned] = repeats.returned.map(|axes| u64::from(axes) / 3);
+        let parts = [
+            sum(&equal.all),
+            equal.far.into(),
+            runs.looked.into(),
+            repeated,
+            returned,
+        ];
         let third = repeats.third.iter().all(|third| *third <= pairs);
-        let counts = pairs <= samples && repeats.returned <= samples.saturating_mul(3);
-        let all = [equal.far, runs.elsewhere].map(u64::from);
         of_three
-            && none
-            && third
             && counts
-            && all.iter().all(|part| *part <= samples)
+            && third
+            && parts.iter().all(|part| *part <= samples)
+            && equal.at.iter().all(|cells| sum(cells) <= samples)
             && equal.learnt <= LEARNT
             && equal.usual <= u64::from(LEARNT) << 32
             && repeats.runs.is_possible(samples)

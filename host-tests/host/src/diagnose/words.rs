@@ -257,7 +257,7 @@ fn verdict_on_curve(diagnosed: &Diagnosed) -> String {
     let p = shown_p(last.fit.p_value);
     let terms = known_filter::terms(&first.model);
     match diagnosed.verdict {
-        Verdict::Invalid(reason) => sentence::invalid(&reason.to_string()),
+        Verdict::Invalid(_) => sentence::invalid(&diagnosed.invalid().unwrap_or_default()),
         Verdict::Adequate if diagnosed.stationarity.is_disturbed() => sentence::mixture(&terms, &p),
         Verdict::Adequate => sentence::adequate(&terms, &p),
         Verdict::TooShort => sentence::too_short(&terms),

@@ -4,6 +4,7 @@ mod carried;
 mod coarse;
 mod disturbed;
 mod range;
+mod reads;
 mod rest;
 mod state;
 

@@ -46,6 +46,26 @@ pub fn measured() -> Result<Value> {
     Ok(measured)
 }
 
+/// Measures one core in both precisions, as far as it is used in them.
+///
+/// # Errors
+/// Fails if there is no such core, or if an image cannot be built or run.
+pub fn measured_of(name: &str) -> Result<Value> {
+    let cores: Vec<Core> = Core::all().filter(|core| core.name == name).collect();
+    let names: Vec<&str> = Core::all().map(|core| core.name).collect();
+    ensure!(
+        !cores.is_empty(),
+        "there is no core {name}; give one of {}",
+        names.join(", ")
+    );
+    let large: Vec<Core> = cores.iter().copied().filter(|core| !core.small).collect();
+    image::build_all(&image::ON_EVERY_CORE, &cores, "firmware")?;
+    image::build_all(&image::ON_LARGE_CORES, &large, "firmware")?;
+    let entry = |core: &Core| measure::entry(core, &measure::figures(core)?);
+    let entries: Result<Vec<Value>> = cores.par_iter().map(entry).collect();
+    Ok(entries?.into())
+}
+
 /// The key of the Cortex-M4F's detailed figures.
 pub fn target(precision: Precision) -> &'static str {
     match precision {

@@ -25,7 +25,6 @@ use crate::{
             gate::{Gate, Passing as _},
             moments::MomentSums as _,
         },
-        course::Course,
         integrity::{Integrity, Reason, exceeds},
     },
     spectrum::Spectrum,
@@ -152,9 +151,12 @@ where
                 .and_then(|course| course.cosine_transform(scale)),
             kurtosis: moments.map(|moments| moments.kurtosis(&sums.accumulator)),
             covariates,
-            invalid: self
-                .verdict(axis)
-                .or_else(|| sums.course.course().and_then(Course::change))
+            invalid: sums
+                .course
+                .course()
+                .map_or(self.verdict(axis), |course| {
+                    course.or_changed(self.verdict(axis))
+                })
                 .or_else(|| self.motion(scale)),
         })
     }

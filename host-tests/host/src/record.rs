@@ -1,7 +1,7 @@
 //! The curves of a log or of a curve file, with what was recorded beside them.
 
 use crate::curve_file::{AxisCurve, CurveFile};
-use allanite::{Curve, Real, course::Course, integrity::Reason, motion};
+use allanite::{Curve, Real, integrity::Reason, motion};
 use allanite_log::{
     Covariates, Evidence, Log, OCTAVES, Options,
     failure::{Failure, Place},
@@ -55,8 +55,10 @@ fn judged(
         let reason = moved(sensor, has_scale);
         for (_, evidence) in sensor {
             // In the order in which a device asks.
-            let changed = || evidence.course.as_ref().and_then(Course::change);
-            evidence.invalid = evidence.invalid.or_else(changed).or(reason);
+            if let Some(course) = &evidence.course {
+                evidence.invalid = course.or_changed(evidence.invalid);
+            }
+            evidence.invalid = evidence.invalid.or(reason);
         }
     }
     axes

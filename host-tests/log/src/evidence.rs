@@ -83,7 +83,7 @@ impl Recorded {
         // The order of the reasons is that of counts, where coarse numbers come before the jumps that they seem to make.
         let invalid = match told.invalid {
             _ if matches!(fault, Some(Reason::Unanswered { .. })) => fault,
-            Some(Reason::Railed { .. }) => told.invalid,
+            Some(Reason::Railed { .. } | Reason::Misread { .. }) => told.invalid,
             Some(Reason::Repeated { .. } | Reason::Stuck { .. }) => fault.or(told.invalid),
             // Motion without a place is judged from the curves of all axes together, by whoever has them.
             Some(Reason::Moved { motions: 0, .. }) => fault.or(coarse),

@@ -31,6 +31,7 @@ mod cuts;
 mod databases;
 mod decode;
 mod diagnose;
+mod doors;
 mod drawings;
 mod dropped;
 mod dropped_hostile;

@@ -70,6 +70,15 @@ impl<const COVARIATES: usize> Course<COVARIATES> {
         })
     }
 
+    /// The reason why a record with this course is not valid, if another one is known: a coarser range makes neighbours equal, so that a
+    /// [change](Self::change) explains repeats.
+    pub fn or_changed(&self, known: Option<Reason>) -> Option<Reason> {
+        match known {
+            None | Some(Reason::Repeated { .. }) => self.change().or(known),
+            known => known,
+        }
+    }
+
     /// The logarithm to base 2 of the noise of each complete block, in counts.
     fn noise_levels(&self) -> Vec<Real, BLOCKS> {
         let mut levels = Vec::new();

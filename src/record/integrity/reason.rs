@@ -108,6 +108,27 @@ pub enum Reason {
     },
 }
 
+impl Reason {
+    /// The reason as a word for files, such as `dead_band`: the name of the variant.
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::Stuck { .. } => "stuck",
+            Self::Repeated { .. } => "repeated",
+            Self::Unanswered { .. } => "unanswered",
+            Self::Stale { .. } => "stale",
+            Self::Coarse { .. } => "coarse",
+            Self::Misread { .. } => "misread",
+            Self::Railed { .. } => "railed",
+            Self::DeadBand { .. } => "dead_band",
+            Self::Spiked { .. } => "spiked",
+            Self::Moved { .. } => "moved",
+            Self::Changed { .. } => "changed",
+            Self::Missing { .. } => "missing",
+            Self::LeftOut { .. } => "left_out",
+        }
+    }
+}
+
 impl core::fmt::Display for Reason {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {

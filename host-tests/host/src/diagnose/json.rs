@@ -52,6 +52,10 @@ pub struct Axis<'a> {
     covariates: Vec<tried::Document>,
     /// The verdict, as it is written in files.
     pub verdict: &'static str,
+    /// Why the record is not valid; `null` if it is.
+    invalid: Option<String>,
+    /// The same in a word.
+    reason: Option<&'static str>,
     /// The effects that the five terms lack, and a covariate if the rate follows one.
     pub missing: Vec<&'static str>,
     ambiguous: Vec<&'static str>,
@@ -178,6 +182,11 @@ fn axis(diagnosed: &Diagnosed) -> Axis<'_> {
             .collect(),
         verdict: diagnosed.verdict_name(),
         missing: diagnosed.missing().collect(),
+        invalid: diagnosed.invalid(),
+        reason: match diagnosed.verdict {
+            allanite::diagnosis::Verdict::Invalid(reason) => Some(reason.name()),
+            _ => None,
+        },
         ambiguous: names,
         detection_limits: limits(diagnosed),
         notes: diagnosed.notes(),

@@ -14,6 +14,7 @@ use crate::{
 use allanite::{
     Curve, Model, Record,
     fit::{Fit, Method, Options, fit},
+    integrity::Reason,
 };
 use allanite_log::{Evidence, OCTAVES, failure::Failure};
 use clap::ValueEnum;
@@ -69,7 +70,9 @@ pub struct Fitted {
     pub method: MethodName,
     /// The fit.
     pub fit: Fit,
-    /// Why the curve is not valid, in words.
+    /// Why the curve is not valid.
+    pub reason: Option<Reason>,
+    /// The same in words.
     pub invalid: Option<String>,
     /// The covariates that were tried.
     pub tried: Vec<TriedCovariate>,
@@ -107,6 +110,7 @@ impl Fitted {
                 model: model.clone(),
                 method,
                 fit,
+                reason: None,
                 invalid: None,
                 tried: Vec::new(),
                 limits: Vec::new(),
@@ -136,6 +140,7 @@ impl Fitted {
         let disturbance = evidence.disturbance.as_ref();
         let unit = fitted.axis.unit;
         Ok(Self {
+            reason,
             invalid: reason
                 .map(|reason| invalid(&reason, disturbance, (name, fitted.axis.rate_hz, unit))),
             tried: tried.map_err(|error| record::library_failure(path, name, error))?,

@@ -7,7 +7,7 @@ use crate::{
     tried::{self, TriedCovariate},
     units,
 };
-use allanite::{Coefficient, fit::State};
+use allanite::{Coefficient, fit::State, integrity::Reason};
 use allanite_log::unit::Unit;
 use serde::{Serialize, Serializer};
 
@@ -47,6 +47,8 @@ pub struct Axis<'a> {
     birge_ratio: f64,
     /// Why the curve is not valid; `null` if it is, or if the input is a curve file.
     pub invalid: Option<&'a str>,
+    /// The same in a word.
+    reason: Option<&'static str>,
     /// The covariates that were tried.
     covariates: Vec<tried::Document>,
     /// What the limits that were asked for say.
@@ -104,6 +106,7 @@ fn axis(fitted: &Fitted) -> Axis<'_> {
         model,
         method,
         fit,
+        reason,
         invalid,
         tried,
         limits,
@@ -141,6 +144,7 @@ fn axis(fitted: &Fitted) -> Axis<'_> {
             .map_or(&[], |judgement| &judgement.missing),
         birge_ratio: fit.birge_ratio,
         invalid: invalid.as_deref(),
+        reason: reason.as_ref().map(Reason::name),
         covariates: tried.iter().map(TriedCovariate::document).collect(),
         limits,
         notes: invalid

@@ -4,7 +4,8 @@
 //! whole record gives it no such place. What remains is the shape of the curve between 0.03 s and 4 s: motion is slow, so that τσ²(τ),
 //! which white noise keeps constant, rises there by decades, and falls again, because hands and vehicles come back while drift does
 //! not; it is large; and it turns the sensor about one axis more than about the others. Each of these is found in gyros at rest, too:
-//! a resonance rises and falls, bias instability rises, and axes differ. A network of one hidden layer weighs them.
+//! a resonance rises and falls, bias instability rises, and axes differ. A network of one hidden layer weighs them. Noise that is
+//! larger than that of any gyro is motion without being weighed.
 //!
 //! Nothing is kept for this, and a sample costs nothing, so that every door that has a curve can ask.
 
@@ -32,6 +33,10 @@ const LONGEST_S: Real = 6.0;
 const LEAST_DIFFERENCES: u64 = 9;
 /// The steepest rise of τσ² in an octave that says more than a smaller one, in powers of ten. Smooth motion rises by 1.2.
 const STEEPEST: Real = 0.95;
+
+/// log₁₀ of the least τσ² in (°/s)²/Hz at a quarter, half and whole second that is motion whatever the shape of the curve is: no gyro at
+/// rest has an angle random walk of 0.5 °/s/√Hz.
+const LOUD: Real = -0.602;
 
 /// The place of the feature of an axis that has a unit, and of the other one of three axes.
 const LEVEL: usize = 5;
@@ -88,7 +93,8 @@ impl Slowness {
 
     /// The features, in powers of ten: the rise of τσ² above its least value at shorter times, among the slow times and among those
     /// before; its fall from the largest value to the last one; a rise with a fall behind it; the steepest octave; the largest slow
-    /// value; the least rise of a slow octave; the rise at the last times; a rise of up to a power of ten; the steepest two octaves.
+    /// value; the least rise of a slow octave; the rise at the last times; a rise of up to a power of ten; the steepest two octaves; and the
+    /// rise from the slow times on alone, and from the one before, which a filter of the sensor does not make.
     fn features(&self) -> [Real; FEATURES] {
         let rises = |from: usize, to: usize| {
             let pairs = self.levels.iter().zip(&self.least);
@@ -122,7 +128,25 @@ impl Slowness {
             rises(5, TIMES_S.len()),
             lesser(rises(1, TIMES_S.len()), 1.0),
             most(pairs),
+            self.rise_from(SLOW),
+            self.rise_from(SLOW - 1),
         ]
+    }
+
+    /// The largest rise above the least value since a place.
+    fn rise_from(&self, place: usize) -> Real {
+        let mut least = Real::INFINITY;
+        let rises = self.levels.iter().skip(place).map(|&level| {
+            least = if level < least { level } else { least };
+            level - least
+        });
+        most(rises)
+    }
+
+    /// Whether the noise is larger than that of any gyro, with a unit whose square has this log₁₀.
+    fn is_loud(&self, unit: Real) -> bool {
+        let mut slow = self.levels.iter().skip(SLOW).take(3);
+        self.known >= SLOW.saturating_add(3) && slow.all(|level| level - unit > LOUD)
     }
 
     /// The rise among the slow times.
@@ -192,6 +216,10 @@ pub(crate) fn judge_axes(axes: &[Option<Slowness>], per_degree: Option<Real>) ->
     };
     // log₁₀ of (°/s)² in squared rate units.
     let unit = per_degree.and_then(|unit| log10(unit * unit));
+    let is_loud = |axis: &&Slowness| unit.is_some_and(|unit| axis.is_loud(unit));
+    if let Some(axis) = axes.iter().flatten().find(is_loud) {
+        return found(true, &[axis]);
+    }
     if let [Some(x), Some(y), Some(z)] = axes {
         let mut features = joint([x, y, z]);
         scale(&mut features, [LEVEL, LEAST_LEVEL], unit);

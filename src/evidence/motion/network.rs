@@ -3,7 +3,7 @@
 use crate::numerics::real::Real;
 
 /// The number of features of an axis.
-pub(super) const FEATURES: usize = 10;
+pub(super) const FEATURES: usize = 12;
 /// The number of features of three axes: the largest of each over the axes, and what the axes say together.
 pub(super) const JOINT: usize = FEATURES + 6;
 

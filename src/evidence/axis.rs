@@ -25,6 +25,7 @@ use crate::{
             gate::{Gate, Passing as _},
             moments::MomentSums as _,
         },
+        course::Course,
         integrity::{Integrity, Reason, exceeds},
     },
     spectrum::Spectrum,
@@ -151,14 +152,24 @@ where
                 .and_then(|course| course.cosine_transform(scale)),
             kurtosis: moments.map(|moments| moments.kurtosis(&sums.accumulator)),
             covariates,
-            invalid: sums
-                .course
-                .course()
-                .map_or(self.verdict(axis), |course| {
-                    course.or_changed(self.verdict(axis))
-                })
-                .or_else(|| self.motion(scale)),
+            invalid: self.invalid(axis, &sums.integrity, sums.course.course(), scale),
         })
+    }
+
+    /// Why the curve of an axis is not valid, by all that is kept. A change of the noise of this axis explains what only others show.
+    fn invalid(
+        &self,
+        axis: usize,
+        integrity: &Integrity,
+        course: Option<&Course<COVARIATES>>,
+        scale: Scale,
+    ) -> Option<Reason> {
+        let known = self.verdict(axis);
+        let is_of_others =
+            matches!(known, Some(Reason::Moved { .. })) && integrity.verdict().is_none();
+        let own = known.filter(|_| !is_of_others);
+        let changed = course.map_or(own, |course| course.or_changed(own));
+        changed.or(known).or_else(|| self.motion(scale))
     }
 
     /// Motion that never stopped, which the curves of all axes show together.

@@ -189,7 +189,12 @@ where
     /// invalid if the gate left out a larger share of its samples than
     /// [`left_out_per_mille`](crate::integrity::Limits::left_out_per_mille) allows, which is one in four by default.
     pub fn verdict(&self, axis: usize) -> Option<Reason> {
-        let verdict = |integrity: &Integrity| integrity.verdict();
+        // The rounding of pulses of an angle is carried over to the next sample.
+        let has_pulses = AXES == 3 && self.kept.reads.joint().is_alternating();
+        let verdict = |integrity: &Integrity| {
+            let verdict = integrity.verdict();
+            verdict.filter(|reason| !(has_pulses && matches!(reason, Reason::Coarse { .. })))
+        };
         let own = self.kept.axes.get(axis).map(|axis| &axis.integrity);
         let all = self.kept.axes.iter().map(|axis| &axis.integrity);
         let moved = |reason: &Reason| matches!(reason, Reason::Moved { .. });

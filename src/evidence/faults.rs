@@ -454,7 +454,7 @@ impl JointRepeats {
 
     /// Whether axes are as they were two samples before more often than as they were one sample before. So are counts of pulses of an
     /// angle, whose neighbours are not independent, so that their steps say nothing of repeats.
-    pub(crate) fn is_alternating(&self) -> bool {
+    pub fn is_alternating(&self) -> bool {
         let [repeated, returned] = self.returned.map(real);
         returned - repeated > 4.0 * sqrt(returned + repeated)
     }

@@ -129,7 +129,8 @@ impl Assembly<'_> {
         let coarse = measured.coarse.get(place).copied().flatten();
         let fault = measured.faults.verdict(place);
         let recorded = &self.recorded;
-        let evidence = recorded.evidence(path, axis, &**watched, [fault, coarse])?;
+        let has_pulses = measured.faults.has_pulses(place);
+        let evidence = recorded.evidence(path, axis, &**watched, ([fault, coarse], has_pulses))?;
         let moved_at = watched.moved_at();
         Ok(Some(Evidence {
             disturbance: recorded.disturbance(

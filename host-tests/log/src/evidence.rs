@@ -10,7 +10,7 @@ use crate::{
     block_means::{BlockMeans, BlockSums},
     failure::{Failure, Place},
 };
-use allanite::{Scale, covariate::Pair, integrity::Reason};
+use allanite::{Scale, course::Course, covariate::Pair, integrity::Reason};
 use std::{path::Path, sync::Arc};
 
 /// A covariate that has been read: its name and the size of its counts, or `None` if it is left out.
@@ -65,13 +65,13 @@ impl Recorded {
     }
 
     /// The evidence of an axis, without its course and its block means. `fault` is what the logger did to its samples, and
-    /// `coarse` is why its numbers are too coarse, if they are.
+    /// `coarse` is why its numbers are too coarse, if they are. Counts may be pulses of an angle.
     pub(super) fn evidence(
         &self,
         path: &Path,
         axis: &Axis,
         watched: &dyn WatchedAxis,
-        [fault, coarse]: [Option<Reason>; 2],
+        ([fault, coarse], has_pulses): ([Option<Reason>; 2], bool),
     ) -> Result<Evidence, Failure> {
         let fail = |error: allanite::Error| {
             Place::file(path).failure(format!("axis {}: {error}", axis.name), "check the scale")
@@ -81,10 +81,13 @@ impl Recorded {
         let units: Vec<f64> = self.named.iter().map(unit).collect();
         let told = watched.evidence(scale, &units).map_err(fail)?;
         // The order of the reasons is that of counts, where coarse numbers come before the jumps that they seem to make.
-        let invalid = match told.invalid {
+        let own = told
+            .invalid
+            .filter(|reason| !(has_pulses && matches!(reason, Reason::Coarse { .. })));
+        let invalid = match own {
             _ if matches!(fault, Some(Reason::Unanswered { .. })) => fault,
-            Some(Reason::Railed { .. } | Reason::Misread { .. }) => told.invalid,
-            Some(Reason::Repeated { .. } | Reason::Stuck { .. }) => fault.or(told.invalid),
+            Some(Reason::Railed { .. } | Reason::Misread { .. }) => own,
+            Some(Reason::Repeated { .. } | Reason::Stuck { .. }) => fault.or(own),
             // Motion without a place is judged from the curves of all axes together, by whoever has them.
             Some(Reason::Moved { motions: 0, .. }) => fault.or(coarse),
             other => fault.or(coarse).or(other),
@@ -257,8 +260,10 @@ pub(super) fn spread_motion(axes: &mut [Axis]) {
         return;
     };
     for one in evidence {
+        // A change of the noise of this axis explains what another one shows.
         if one.invalid.is_none() {
-            one.invalid = reason;
+            let changed = one.course.as_ref().and_then(Course::change);
+            one.invalid = changed.or(reason);
         }
         if one.disturbance.is_none() {
             one.disturbance.clone_from(&motion);

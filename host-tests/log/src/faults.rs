@@ -162,6 +162,12 @@ impl Faults {
         self.places.get(place)?.share(counted)
     }
 
+    /// Whether the counts of an axis are pulses of an angle, which need no noise of half a count.
+    pub(super) fn has_pulses(&self, axis: usize) -> bool {
+        let reads = self.sensors.get(axis / SENSOR);
+        reads.is_some_and(|reads| reads.joint().is_alternating())
+    }
+
     /// The plan of another pass that leaves out the repeats, if all of them are certain: hardly any is there by chance,
     /// all axes have them, and no value is held.
     pub(super) fn without_repeats(&self) -> Option<Plan> {

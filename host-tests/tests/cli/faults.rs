@@ -197,7 +197,12 @@ fn a_change_of_range_within_a_record_is_said() {
         // Each part alone is that of a gyro at rest.
         let (_, rest) = rest.split_once("one part alone, with ").expect(&said);
         let (before, rest) = rest.split_once(" or ").unwrap();
-        let behind = rest.split_once('.').unwrap().0;
+        let behind = rest
+            .split_whitespace()
+            .take(2)
+            .collect::<Vec<_>>()
+            .join(" ");
+        let behind = behind.trim_end_matches('.');
         for part in [before, behind] {
             let part = part.replace(' ', "=");
             let alone = json(folder.path(), &[&diagnose[..], &[&part]].concat());

@@ -1,4 +1,5 @@
 //! What takes minutes: `cargo xtask test --all` runs it.
 
+mod doors;
 mod injected;
 mod injected_watch;

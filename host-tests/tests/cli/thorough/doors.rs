@@ -1,0 +1,24 @@
+//! Six hundred records by all doors.
+
+use crate::doors::Count;
+
+#[test]
+fn six_hundred_records_get_one_verdict_each() {
+    // Fifteen events and six kinds of rest a round, and as many rounds of rest again.
+    let count = Count::of(28, 4000, 2_000..40_000);
+    println!("{count:#?}");
+    assert!(count.records >= 580, "{count:?}");
+    assert!(count.unequal.len() * 100 <= count.records, "{count:?}");
+    let [of_rest, rest] = count.found["Nothing"];
+    assert!(of_rest * 60 <= rest, "{count:?}");
+    for (event, [found, all]) in &count.found {
+        let least = match event.as_str() {
+            "Nothing" => continue,
+            "HandHeld" | "Vehicle" => 50,
+            // An offset may keep the counts of an axis from zero.
+            "Unsigned" => 85,
+            _ => 95,
+        };
+        assert!(found * 100 >= least * all, "{event}: {count:?}");
+    }
+}

@@ -176,9 +176,8 @@ fn record(noise: Noise, event: Event, samples: usize, random: &mut Xoshiro256Plu
             }
         }
         Event::Stuck => {
-            for n in at as usize..samples.min(at as usize + samples / 8) {
-                rows[n] = fresh[at as usize];
-            }
+            let until = samples.min(at as usize + samples / 8);
+            rows[at as usize..until].fill(fresh[at as usize]);
         }
         _ => {}
     }

@@ -113,7 +113,7 @@
 #endif
 
 // Words of an `AllaniteGyro`.
-#define ALLANITE_GYRO_WORDS (2208 + (66 * ALLANITE_OCTAVES))
+#define ALLANITE_GYRO_WORDS (2322 + (66 * ALLANITE_OCTAVES))
 
 // Words of an `AllaniteAxis`.
 #define ALLANITE_AXIS_WORDS (23 + (12 * ALLANITE_OCTAVES))
@@ -134,7 +134,7 @@
 #define ALLANITE_CERTIFICATE_WORDS 560
 
 // Bytes of a buffer for any snapshot of a record and a self-test.
-#define ALLANITE_SNAPSHOT_BYTES (8400 + (310 * ALLANITE_OCTAVES))
+#define ALLANITE_SNAPSHOT_BYTES (8800 + (310 * ALLANITE_OCTAVES))
 
 // Bytes of a buffer for any certificate.
 #define ALLANITE_CERTIFICATE_BYTES 3700
@@ -376,6 +376,14 @@ enum AllaniteReason
 #if defined(ALLANITE_WHOLE)
   // The noise changed, as by another range of the sensor.
   ALLANITE_REASON_CHANGED = 12,
+#endif
+#if defined(ALLANITE_WHOLE)
+  // Samples have one number on all axes, as a bus on which no sensor answers gives them.
+  ALLANITE_REASON_UNANSWERED = 13,
+#endif
+#if defined(ALLANITE_WHOLE)
+  // Blocks of samples are there a second time, as a buffer that was not refilled leaves them.
+  ALLANITE_REASON_STALE = 14,
 #endif
 };
 #ifndef __cplusplus

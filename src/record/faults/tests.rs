@@ -3,6 +3,7 @@
 extern crate std;
 use super::*;
 use crate::numerics::test_random::Random;
+use crate::record::reads::Reads;
 use std::{vec, vec::Vec};
 
 const ROWS: usize = 5000;
@@ -49,19 +50,19 @@ fn counters_are_those_of_the_definition() {
     for (seed, step) in (1..6).zip([1, 3, 16, 1000, 1 << 20]) {
         let axes = [noise(seed), noise(seed + 10), noise(seed + 20)];
         let mut faults = [(); 3].map(|()| SampleFaults::new());
-        let mut joint = JointRepeats::new();
+        let mut reads: Reads = Reads::new();
         // A gap lies before this row.
         let gap = 2000;
         for row in 0..ROWS {
             if row == gap {
                 faults.iter_mut().for_each(SampleFaults::gap);
-                joint.push([None; 3]);
+                reads.gap();
             }
             let mut steps = [None; 3];
             for ((steps, faults), axis) in steps.iter_mut().zip(&mut faults).zip(&axes) {
                 *steps = faults.push(step * axis[row]);
             }
-            joint.push(steps);
+            reads.push_steps(axes.each_ref().map(|axis| step * axis[row]), steps);
         }
         let pairs = || (1..ROWS).filter(|&row| row != gap);
         let difference = |axis: &[i32], row: usize| axis[row].abs_diff(axis[row - 1]);
@@ -128,6 +129,7 @@ fn counters_are_those_of_the_definition() {
                 third[size - 1] += 1;
             }
         }
+        let joint = reads.joint();
         assert_eq!((joint.cells, joint.third), (cells, third));
         is_counted(&joint.runs, &all);
     }

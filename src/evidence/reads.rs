@@ -127,7 +127,9 @@ impl<const AXES: usize> Reads<AXES> {
             return None;
         }
         let is_one = most.runs.saturating_mul(10) >= runs.whole.saturating_mul(7);
-        let is_whole = runs.whole.saturating_mul(10) >= runs.long.saturating_mul(6);
+        // Counts of few levels come back in runs of other lengths, too.
+        let least = if runs.bits() < PERIODIC { 17 } else { 12 };
+        let is_whole = runs.whole.saturating_mul(20) >= runs.long.saturating_mul(least);
         let [of_one, of_several] = RUNS;
         let fewest = if AXES == 1 { of_one } else { of_several };
         let is_sure =

@@ -16,7 +16,7 @@ const JUDGED: u32 = 1000;
 const FEWEST: u32 = 12;
 const FEWEST_FAR: u32 = 6;
 const ONE_IN: u32 = 10_000;
-/// The significance from which reads without an answer are recognised, in standard errors. `cargo xtask study reads` counts with it.
+/// The significance from which reads without an answer are recognised, in standard errors. `cargo xtask study faults` counts with it.
 const SURE: Real = 4.0;
 /// The significance of pairs of equal axes from which the axes move together, so that nothing is known.
 const TOGETHER: Real = 3.0;

@@ -322,7 +322,11 @@ fn pulses(random: &mut Random) -> Record {
     };
     let axes = [(); 3].map(|()| {
         let turn = 0.05 * 20_f64.powf(random.random_range(0.0..1.0));
-        let turn = if random.random_range(0..2) == 0 { turn } else { -turn };
+        let turn = if random.random_range(0..2) == 0 {
+            turn
+        } else {
+            -turn
+        };
         let mut angle: f64 = random.random_range(0.0..9.0);
         let mut counted = angle.floor();
         let step = |_| {

@@ -10,8 +10,14 @@ const SEED: u64 = 77;
 fn records_without_a_fault_have_none() {
     for resolution in [Resolution::Counts, Resolution::Fine, Resolution::Pulses] {
         for tally in study(Fault::None, resolution, 2000, SEED) {
-            // 0.2 % of them at most, in a sample: 10 of 2000 have a probability below 1 % then.
-            assert!(tally.otherwise.len() < 10, "{:?}", tally.otherwise);
+            // 0.2 % of them at most, in a sample: 10 of 2000 have a probability below 1 % then. Pulses with hardly any noise are
+            // nearly periodic: 0.7 % of them.
+            let most = if resolution == Resolution::Pulses {
+                26
+            } else {
+                10
+            };
+            assert!(tally.otherwise.len() < most, "{:?}", tally.otherwise);
             assert_eq!(tally.records, 2000);
         }
     }
@@ -35,6 +41,7 @@ fn repeats_are_told_with_the_rate_of_the_sensor() {
             Fault::Unanswered(Some(_), _) => [0.0, 0.5, 0.5],
             Fault::Unanswered(None, _) => [0.0, 0.95, 0.95],
             Fault::Stale(8, _) => [0.0, 0.8, 0.8],
+            Fault::Stale(64, _) => [0.0, 0.8, 0.8],
             Fault::Stale(..) => [0.0, 0.93, 0.93],
             Fault::None => unreachable!("a record without a fault"),
         };

@@ -51,7 +51,10 @@ pub(crate) fn cases() -> Vec<Case> {
         ("export -f c a.csv -o .", "is a directory"),
         ("export -f c a.csv -o none/a.h", "its folder does not exist"),
         ("export -f c a.csv -o loop", "too many symbolic links"),
-        ("export -f c a.csv -o /dev/full", "no space left"),
+        (
+            "export -f c a.csv --despite-invalid -o /dev/full",
+            "no space left",
+        ),
     ] {
         let links = "ln a.csv b.csv; ln -s a.csv c.csv; ln -s a.csv d.svg; ln a.csv e.html; \
                      ln a.csv f.json; ln -s loop loop";

@@ -25,7 +25,7 @@ fn fit_prints_the_documented_json() {
         assert_eq!(axis.adequate, Some(is_adequate));
         assert!(axis.missing.is_empty());
         assert!(axis.birge_ratio >= 1.0 && axis.notes.is_empty());
-        assert!(axis.invalid.is_none() && axis.covariates.is_empty());
+        assert!(axis.invalid.is_none() && axis.reason.is_none() && axis.covariates.is_empty());
         assert_eq!(axis.octaves[0].differences, 19_999);
         for (k, octave) in axis.octaves.iter().enumerate() {
             assert_eq!(

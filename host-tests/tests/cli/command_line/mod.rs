@@ -55,6 +55,7 @@ struct Axis {
     missing: Vec<String>,
     birge_ratio: f64,
     invalid: Option<String>,
+    reason: Option<String>,
     covariates: Vec<serde_json::Value>,
     notes: Vec<String>,
 }

@@ -12,7 +12,7 @@ use crate::{
     limits::MAX_EFFECTS,
     list::{self, numbered},
     numerics::{
-        chi_squared::chi_squared_tail,
+        deviance::p_value,
         math,
         nnls::Vector,
         real::{Real, real, single},
@@ -96,7 +96,7 @@ pub struct Comparison<const K: usize, const B: usize = 0> {
     pub chi_squared: Real,
     /// The number of octaves and bins that are fitted, less the number of unknowns.
     pub degrees_of_freedom: usize,
-    /// Probability of a larger χ² if the model is true. NaN without degrees of freedom.
+    /// Probability of a larger χ² or deviance if the model is true, as that of a [`Fit`]. NaN without degrees of freedom.
     pub p_value: Real,
     /// Root-mean-square disagreement of the octaves, in percent of the model's variance.
     pub rms_percent: Real,
@@ -216,7 +216,8 @@ impl<const K: usize, const B: usize> Comparison<K, B> {
         let squared_residuals = weights.squared_residuals(problem, squares);
         self.chi_squared = weights.chi_squared(problem, squares, squared_residuals);
         self.degrees_of_freedom = problem.row_count().saturating_sub(unknowns);
-        self.p_value = chi_squared_tail(self.chi_squared, self.degrees_of_freedom);
+        let deviance = weights.deviance(problem, squares);
+        self.p_value = p_value(self.chi_squared, deviance, self.degrees_of_freedom);
         self.rms_percent = math::sqrt(sum_of_squares / self.octaves.len().max(1) as Real);
     }
 

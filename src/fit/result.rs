@@ -45,7 +45,11 @@ pub struct Fit {
     /// The number of octaves that the method uses, less the number of coefficients above zero and of their fitted shape
     /// parameters.
     pub degrees_of_freedom: usize,
-    /// Probability of a larger χ² if the model is true. NaN without χ² or without degrees of freedom.
+    /// The squared deviance residuals in units of their correlation. It is about as large as χ² for a true model, and larger
+    /// for one that lies far above the measurement, which χ² by the model's own covariance hardly sees. NaN where χ² is NaN.
+    pub deviance: Real,
+    /// Probability of a larger χ² if the model is true, or ten times that of a larger deviance if this is smaller. NaN without χ²
+    /// or without degrees of freedom.
     pub p_value: Real,
     /// The largest peak of the spectrum above the model; `None` if no spectrum was fitted.
     pub peak: Option<Peak>,
@@ -71,6 +75,7 @@ impl Fit {
         shape: Vec::new(),
         chi_squared: 0.0,
         degrees_of_freedom: 0,
+        deviance: 0.0,
         p_value: 0.0,
         peak: None,
         minus_two_log_likelihood: 0.0,

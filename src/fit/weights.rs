@@ -6,6 +6,7 @@ use crate::{
     limits::MAX_EFFECTS,
     list::numbered,
     numerics::{
+        deviance::deviance_residual,
         math,
         nnls::{NormalEquations, Vector},
         real::{Real, real, single},
@@ -212,6 +213,19 @@ impl<const K: usize, const B: usize> Weights<K, B> {
             2.0 * excess * (1.0 - tolerance / (error * error))
         });
         (squared_residuals - corrections.sum::<Real>()).max(0.0)
+    }
+
+    /// The sum of squares of the deviance residuals, in units of their correlation: nearly a χ² if the model is true, whatever
+    /// the numbers of differences are, and large for a model that is too high.
+    #[inline(never)]
+    pub(crate) fn deviance(&self, problem: &Problem<'_, K, B>, squares: &Vector) -> Real {
+        let residual = |row: usize| {
+            let (error, model) = (self.relative_error(row), problem.variance(row, squares));
+            let ratio = single(problem.measured(row) / model);
+            // Residuals are in standard errors, which are relative to the model of the weights.
+            real(deviance_residual(ratio, single(error))) * error * self.model[row]
+        };
+        self.whiten(problem, &|_| 1.0, &residual).norm_squared()
     }
 
     /// Sets the normal equations `A'C⁻¹A β = A'C⁻¹y`, one column at a time. The standard error of

@@ -33,8 +33,9 @@ const BOUND_ROUNDS: u8 = 2;
 /// The rounds of a test end when the relative change of the model is smaller than this.
 const ROUGHLY: f32 = 0.03;
 
-/// The normal deviate that is exceeded with the probability of [`ADEQUATE_P`](crate::fit::ADEQUATE_P).
+/// The normal deviate that is exceeded with the probability of [`ADEQUATE_P`](crate::fit::ADEQUATE_P), and with a tenth of it.
 const INADEQUATE: f32 = 2.326_348;
+const INADEQUATE_DEVIANCE: f32 = 3.090_232;
 
 /// Turns what the fit finds into coefficients. Roots are kept, because their squares may be beyond the range of numbers.
 #[derive(Clone, Copy)]
@@ -59,15 +60,31 @@ impl Scale {
     }
 }
 
-/// The factor by which errors are widened if χ² is too large to be one of an adequate model. Its quantile is that of
-/// Wilson & Hilferty (1931).
+/// The factor by which errors are widened if χ² or the deviance is too large to be one of an adequate model.
+pub(super) fn widened(chi_squared: f32, deviance: f32, degrees_of_freedom: usize) -> f32 {
+    let by_chi_squared = birge_ratio(chi_squared, degrees_of_freedom);
+    let by_deviance = beyond(deviance, degrees_of_freedom, INADEQUATE_DEVIANCE);
+    if by_chi_squared < by_deviance {
+        by_deviance
+    } else {
+        by_chi_squared
+    }
+}
+
+/// The factor by which errors are widened if χ² is too large to be one of an adequate model.
 pub(super) fn birge_ratio(chi_squared: f32, degrees_of_freedom: usize) -> f32 {
+    beyond(chi_squared, degrees_of_freedom, INADEQUATE)
+}
+
+/// The root of χ² for each degree of freedom, or 1 if it is below the quantile of this normal deviate, which is that of
+/// Wilson & Hilferty (1931).
+fn beyond(chi_squared: f32, degrees_of_freedom: usize, deviate: f32) -> f32 {
     if degrees_of_freedom == 0 {
         return 1.0;
     }
     let degrees = degrees_of_freedom as f32;
     let share = 2.0 / (9.0 * degrees);
-    let root = 1.0 - share + INADEQUATE * sqrt(share);
+    let root = 1.0 - share + deviate * sqrt(share);
     let ratio = chi_squared / degrees;
     if ratio > root * root * root {
         sqrt(ratio)

@@ -55,8 +55,11 @@ use crate::{
     curve::Curve,
     error::Error,
     evidence::record::Record,
-    fit::{ADEQUATE_P, chi_squared_tail, coefficient::Coefficient},
-    numerics::real::{Real, real},
+    fit::{ADEQUATE_P, coefficient::Coefficient},
+    numerics::{
+        deviance::p_value,
+        real::{Real, real},
+    },
 };
 use memory::{Memory, consecutive};
 use rounds::{begin, solve};
@@ -74,6 +77,8 @@ pub struct Fit {
     pub coefficients: [Coefficient; TERMS],
     /// χ² of the octaves, as that of the [general fit](crate::fit::Fit::chi_squared).
     pub chi_squared: Real,
+    /// The deviance of the octaves, as that of the [general fit](crate::fit::Fit::deviance).
+    pub deviance: Real,
     /// The number of octaves, less the number of coefficients above zero.
     pub degrees_of_freedom: usize,
     /// The tolerance that was granted: 0, or 0.01 where the terms do not explain the curve without it.
@@ -84,9 +89,10 @@ pub struct Fit {
 }
 
 impl Fit {
-    /// The probability of a larger χ² if the five terms explain the curve; NaN without degrees of freedom.
+    /// The probability of a larger χ² or deviance if the five terms explain the curve, as that of the
+    /// [general fit](crate::fit::Fit::p_value); NaN without degrees of freedom.
     pub fn p_value(&self) -> Real {
-        chi_squared_tail(self.chi_squared, self.degrees_of_freedom)
+        p_value(self.chi_squared, self.deviance, self.degrees_of_freedom)
     }
 
     /// Whether the five terms explain the curve: the [p-value](Self::p_value) is [`ADEQUATE_P`] or more. `None` without
@@ -131,10 +137,12 @@ pub(crate) fn fit_curve<const K: usize>(curve: &Curve<K>) -> Result<Fit, Error> 
         chi_squared = solve(&mut rows, &mut tableau, &mut squares).ok_or(Error::Singular)?;
     }
     let degrees_of_freedom = degrees(&tableau);
-    let birge_ratio = estimate::birge_ratio(chi_squared, degrees_of_freedom);
+    let deviance = rows.deviance(&squares);
+    let birge_ratio = estimate::widened(chi_squared, deviance, degrees_of_freedom);
     let scale = estimate::Scale::new(reference, curve.interval_s(), rows.units);
     Ok(Fit {
         chi_squared: real(chi_squared),
+        deviance: real(deviance),
         degrees_of_freedom,
         tolerance,
         birge_ratio: real(birge_ratio),

@@ -7,6 +7,7 @@ use super::{
     tableau::Tableau,
     terms::{TERMS, Units, WALK, WHITE, is_positive, power, sqrt, truncated},
 };
+use crate::numerics::deviance::deviance_residual;
 
 /// A number of the factor is in units of 2^-30: the covariance is scaled to a diagonal of one.
 const FACTOR_BITS: u32 = 30;
@@ -57,6 +58,8 @@ pub(super) enum Column<'a> {
     Measured,
     /// The curve, less the model of these squared coefficients.
     Residual(&'a [f32; TERMS]),
+    /// The deviance residuals beside that model.
+    Deviance(&'a [f32; TERMS]),
 }
 
 impl<'a, const K: usize> Rows<'a, K> {
@@ -174,6 +177,10 @@ impl<'a, const K: usize> Rows<'a, K> {
                 Column::Term(term) => units.variance(term, octave),
                 Column::Measured => row.measured - held.1 * units.variance(held.0, octave),
                 Column::Residual(squares) => row.measured - units.model(squares, octave),
+                Column::Deviance(squares) => {
+                    let ratio = row.measured / units.model(squares, octave);
+                    return deviance_residual(ratio, 1.0 / row.certainty);
+                }
             };
             own * row.weight
         };
@@ -244,6 +251,13 @@ impl<'a, const K: usize> Rows<'a, K> {
             *gradient = self.product(term, TERMS);
         }
         (gradient, self.product(TERMS, TERMS))
+    }
+
+    /// The sum of squares of the deviance residuals, in units of their correlation.
+    #[inline(never)]
+    pub(super) fn deviance(&mut self, squares: &[f32; TERMS]) -> f32 {
+        self.whiten(TERMS, Column::Deviance(squares));
+        self.product(TERMS, TERMS)
     }
 
     /// By how much the relative residuals exceed zero, twice: what χ² gains because its covariance follows the measurement

@@ -3,6 +3,7 @@
 pub(crate) mod algebra;
 pub(crate) mod chi_squared;
 pub(crate) mod cholesky;
+pub(crate) mod deviance;
 pub(crate) mod math;
 pub(crate) mod nnls;
 pub(crate) mod real;

@@ -100,15 +100,22 @@ impl Growth {
         effects: &[&'static dyn Effect],
         count: usize,
     ) -> ControlFlow<(), bool> {
+        let Some(beam) = beams.get_mut(count) else {
+            return ControlFlow::Continue(false);
+        };
+        solver.pass_all(beam, effects)?;
+        self.best = self.best.min(lowest(beam.as_slice()));
+        // What is found behind another filter grows too.
+        let left = self.left(solver.observation.expected_deviance());
+        self.cross(solver, beams, count, left)?;
         let Some((lower, higher)) = beams.split_at_mut_checked(count.saturating_add(1)) else {
             return ControlFlow::Continue(false);
         };
         let Some(beam) = lower.last_mut() else {
             return ControlFlow::Continue(false);
         };
-        solver.pass_all(beam, effects)?;
         self.best = self.best.min(lowest(beam.as_slice()));
-        let left = (self.best - solver.observation.expected_deviance()).max(0.0);
+        let left = self.left(solver.observation.expected_deviance());
         let parents = self.parents(plain, beam.as_slice(), count, left);
         for parent in parents.iter().filter(|_| count < MOST) {
             solver.grow(parent, effects, &mut |hypothesis| {
@@ -124,7 +131,6 @@ impl Growth {
                 pool.bar()
             })?;
         }
-        self.cross(solver, beams, count, left)?;
         let next = beams.get(count.saturating_add(1));
         let next = next.map_or(Real::INFINITY, |beam| lowest(beam.as_slice()));
         let worse = if solver.observation.has_bins() {
@@ -133,6 +139,11 @@ impl Growth {
             WORSE_IN_OCTAVES
         };
         ControlFlow::Continue(next <= self.best + worse)
+    }
+
+    /// What the best hypothesis of all leaves to explain.
+    fn left(&self, expected_deviance: Real) -> Real {
+        (self.best - expected_deviance).max(0.0)
     }
 
     /// The hypotheses of a beam, and those of the continuum with as many effects, that are worth another effect.

@@ -62,7 +62,8 @@ fn ramp(curve: &Curve<OCTAVES>) -> (Coefficient, bool) {
 #[test]
 fn a_coefficient_that_only_the_scatter_of_the_longest_octave_shows_is_not_measured() {
     let mut taken_back = 0;
-    let states = [1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 10.0, 30.0].map(|longest| {
+    // A curve whose longest octave alone is still higher is one that no ramp explains, by its deviance.
+    let states = [1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 10.0].map(|longest| {
         let (ramp, before) = ramp(&curve(WEAK, longest));
         // A tested coefficient keeps its value and the upper end of its interval.
         assert!(
@@ -75,7 +76,7 @@ fn a_coefficient_that_only_the_scatter_of_the_longest_octave_shows_is_not_measur
         taken_back += usize::from(before && !measured);
         measured
     });
-    assert!(states.is_sorted() && !states[1] && states[7], "{states:?}");
+    assert!(states.is_sorted() && !states[1] && states[6], "{states:?}");
     assert!(taken_back > 0);
 }
 

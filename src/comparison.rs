@@ -12,7 +12,7 @@ use crate::{
     limits::MAX_EFFECTS,
     list::{self, numbered},
     numerics::{
-        deviance::p_value,
+        deviance::judged,
         math,
         nnls::Vector,
         real::{Real, real, single},
@@ -214,10 +214,11 @@ impl<const K: usize, const B: usize> Comparison<K, B> {
             }
         }));
         let squared_residuals = weights.squared_residuals(problem, squares);
-        self.chi_squared = weights.chi_squared(problem, squares, squared_residuals);
+        let chi_squared = weights.chi_squared(problem, squares, squared_residuals);
         self.degrees_of_freedom = problem.row_count().saturating_sub(unknowns);
         let deviance = weights.deviance(problem, squares);
-        self.p_value = p_value(self.chi_squared, deviance, self.degrees_of_freedom);
+        let degrees = self.degrees_of_freedom;
+        (self.chi_squared, self.p_value) = judged(chi_squared, deviance, degrees);
         self.rms_percent = math::sqrt(sum_of_squares / self.octaves.len().max(1) as Real);
     }
 

@@ -13,7 +13,6 @@ use crate::{
     },
     limits::{CHI_SQUARED_95, MAX_SHAPE},
     numerics::{
-        deviance::p_value,
         math,
         nnls::{Interval, NormalEquations, Vector},
         real::{Real, consts::FRAC_1_SQRT_2, real},
@@ -70,8 +69,8 @@ impl Estimator {
         fit.shape.clear();
         fit.chi_squared = solver.chi_squared;
         fit.degrees_of_freedom = solver.degrees_of_freedom();
-        fit.deviance = solver.weights.deviance(problem, &solver.squares);
-        fit.p_value = p_value(fit.chi_squared, fit.deviance, fit.degrees_of_freedom);
+        fit.deviance = solver.deviance;
+        fit.p_value = solver.p_value();
         fit.peak = highest_peak(problem, &solver.weights, &solver.squares);
         fit.minus_two_log_likelihood = solver.minus_two_log_likelihood();
         fit.tolerance = solver.weights.tolerance;
@@ -142,10 +141,7 @@ fn highest_peak<const K: usize, const B: usize>(
 fn birge_ratio(fit: &Fit) -> Real {
     match fit.is_adequate() {
         // A model may fail by a single peak, with a χ² that is not large.
-        Some(false) => {
-            let residuals = fit.chi_squared.max(fit.deviance);
-            math::sqrt(residuals / real(fit.degrees_of_freedom)).max(1.0)
-        }
+        Some(false) => math::sqrt(fit.chi_squared / real(fit.degrees_of_freedom)).max(1.0),
         _ => 1.0,
     }
 }

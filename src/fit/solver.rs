@@ -10,7 +10,7 @@ use crate::{
     error::Error,
     list::numbered,
     numerics::{
-        chi_squared::chi_squared_tail,
+        deviance::judged,
         nnls::{NormalEquations, PassiveSet, Vector},
         real::Real,
     },
@@ -79,7 +79,10 @@ pub(crate) struct Solver<const K: usize, const B: usize = 0> {
     pub(crate) equations: NormalEquations,
     pub(crate) squares: Vector,
     pub(crate) free: PassiveSet,
+    /// χ², or the deviance where this decides, and the probability of a larger one.
     pub(crate) chi_squared: Real,
+    p_value: Real,
+    pub(crate) deviance: Real,
     /// What the solution makes smallest, `r'C⁻¹r`.
     pub(crate) squared_residuals: Real,
     /// The squares at which the covariance is taken. They approach the squares that it leads to.
@@ -105,6 +108,8 @@ impl<const K: usize, const B: usize> Solver<K, B> {
         squares: Vector::ZEROS,
         free: PassiveSet::NONE,
         chi_squared: 0.0,
+        p_value: 0.0,
+        deviance: 0.0,
         squared_residuals: 0.0,
         assumed: Vector::ZEROS,
         degrees_of_freedom: 0,
@@ -222,11 +227,14 @@ impl<const K: usize, const B: usize> Solver<K, B> {
         Ok(false)
     }
 
-    /// Sets χ² of the solution.
+    /// Sets χ² of the solution, and what follows from it.
     fn judge(&mut self, problem: &Problem<'_, K, B>) {
         let (weights, squares) = (&self.weights, &self.squares);
         self.squared_residuals = weights.squared_residuals(problem, squares);
-        self.chi_squared = weights.chi_squared(problem, squares, self.squared_residuals);
+        let chi_squared = weights.chi_squared(problem, squares, self.squared_residuals);
+        self.deviance = weights.deviance(problem, squares);
+        let degrees = self.degrees_of_freedom;
+        (self.chi_squared, self.p_value) = judged(chi_squared, self.deviance, degrees);
     }
 
     /// Whether the rounds have ended at a solution that the caller has put into `squares`, because the model changed
@@ -284,8 +292,8 @@ impl<const K: usize, const B: usize> Solver<K, B> {
     }
 
     /// The probability of a larger χ² if the model is true; NaN without degrees of freedom.
-    pub(crate) fn p_value(&self) -> Real {
-        chi_squared_tail(self.chi_squared, self.degrees_of_freedom)
+    pub(crate) const fn p_value(&self) -> Real {
+        self.p_value
     }
 
     /// `−2 ln L = r'C⁻¹r + ln det C`, up to a constant.

@@ -9,16 +9,16 @@ use core::f32::consts::LN_2;
 
 /// The deviance decides only where its probability is this many times smaller than that of χ², so that true models are called
 /// inadequate in hardly more records than by χ² alone.
-pub(crate) const DOUBT: Real = 10.0;
+const DOUBT: Real = 10.0;
 
-/// The probability that a true model is as far from the measurement as this χ² or this deviance says.
-pub(crate) fn p_value(chi_squared: Real, deviance: Real, degrees_of_freedom: usize) -> Real {
+/// What a model is judged by: χ² of its residuals or the deviance, and the probability of a larger one.
+pub(crate) fn judged(chi_squared: Real, deviance: Real, degrees_of_freedom: usize) -> (Real, Real) {
     let by_chi_squared = chi_squared_tail(chi_squared, degrees_of_freedom);
     let by_deviance = DOUBT * chi_squared_tail(deviance, degrees_of_freedom);
     if by_deviance < by_chi_squared {
-        by_deviance
+        (deviance, by_deviance)
     } else {
-        by_chi_squared
+        (chi_squared, by_chi_squared)
     }
 }
 

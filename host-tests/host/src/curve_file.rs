@@ -13,7 +13,9 @@ pub use course::CourseDensities;
 use levels::TOLERANCE;
 pub use levels::{SpectrumLevel, SpectrumLevels};
 
-use allanite::{Curve, Scale, course::CosineTransform, octave::Bridged, spectrum::Spectrum};
+use allanite::{
+    Curve, Scale, course::CosineTransform, integrity::Reason, octave::Bridged, spectrum::Spectrum,
+};
 use allanite_log::{
     self as log, BINS, OCTAVES,
     failure::{Failure, Place, one_line, quoted},
@@ -28,8 +30,9 @@ use std::{io::Read, path::Path};
 pub const FORMAT: &str = "allanite-curve";
 
 /// The version of the format that is written. Versions from 1 on are read; version 1 has no spectrum, version 2 no short
-/// octaves, version 3 neither a course nor levels of the spectrum with fewer than 16 segments, and version 4 no pieces.
-pub const VERSION: u32 = 5;
+/// octaves, version 3 neither a course nor levels of the spectrum with fewer than 16 segments, version 4 no pieces, and version 5
+/// not whether the record is valid.
+pub const VERSION: u32 = 6;
 
 /// Largest size of a curve file, in bytes. A curve takes a few kilobytes for each axis. Chosen by hand.
 const LARGEST: u64 = 1 << 24;
@@ -93,6 +96,9 @@ pub struct AxisCurve {
     /// have none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pieces: Option<Pieces>,
+    /// Why the record is not one of a gyro at rest, if it is not. Files before version 6 do not say it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub invalid: Option<Reason>,
 }
 
 fn is_zero(number: &u64) -> bool {
@@ -294,6 +300,7 @@ impl AxisCurve {
                 .filter(|spectrum| !spectrum.levels.is_empty()),
             course: course.as_ref().map(CourseDensities::of),
             pieces: None,
+            invalid: None,
         })
     }
 
@@ -335,6 +342,7 @@ impl AxisCurve {
             spectrum: None,
             course: None,
             pieces: None,
+            invalid: None,
         }
     }
 

@@ -53,12 +53,13 @@ fn judged(
     };
     for sensor in axes.chunks_mut(size) {
         let reason = moved(sensor, has_scale);
-        for (_, evidence) in sensor {
+        for (axis, evidence) in sensor {
             // In the order in which a device asks.
             if let Some(course) = &evidence.course {
                 evidence.invalid = course.or_changed(evidence.invalid);
             }
             evidence.invalid = evidence.invalid.or(reason);
+            axis.invalid = evidence.invalid;
         }
     }
     axes
@@ -124,10 +125,12 @@ pub fn of_curves(axes: impl IntoIterator<Item = AxisCurve>) -> Vec<(AxisCurve, E
     judged(axes.into_iter().map(beside), true)
 }
 
-/// A curve, with what its pieces say of the samples, if it has them.
+/// A curve, with what its file or its pieces say of the samples, if they do.
 fn beside(axis: AxisCurve) -> (AxisCurve, Evidence) {
     let evidence = Evidence {
-        invalid: axis.pieces.as_ref().and_then(Pieces::invalid),
+        invalid: axis
+            .invalid
+            .or_else(|| axis.pieces.as_ref().and_then(Pieces::invalid)),
         ..Evidence::default()
     };
     (axis, evidence)

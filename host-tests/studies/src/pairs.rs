@@ -63,6 +63,8 @@ pub struct Tally {
     pub covered: usize,
     /// Something is left that has no name.
     pub unexplained: usize,
+    /// χ² of a step is larger than that of the step before.
+    pub rises: usize,
     /// What was hidden and what was said, of records that are not exact.
     pub others: Vec<(String, String)>,
 }
@@ -232,6 +234,7 @@ impl Tally {
         self.missing += usize::from(compared.missing);
         self.covered += usize::from(covered);
         self.unexplained += usize::from(said.is_unexplained());
+        self.rises += usize::from(said.rises);
         if !compared.exact {
             self.others.push((truth.to_owned(), said.words()));
         }

@@ -26,6 +26,8 @@ pub struct Said {
     pub coefficients: Vec<(&'static str, Coefficient)>,
     /// The shape parameters of the last model, with their intervals: name, value, lower and upper end.
     pub intervals: Vec<(&'static str, [f64; 3])>,
+    /// Whether χ² of a step is larger than that of the step before.
+    pub rises: bool,
 }
 
 /// How what is said compares with what is hidden.
@@ -59,7 +61,10 @@ impl Said {
             let names = term.effect.parameters().len();
             term.parameters.iter().take(names).copied().collect()
         });
+        let mut pairs = steps.windows(2);
+        let rises = pairs.any(|pair| pair[1].fit.chi_squared > pair[0].fit.chi_squared);
         Self {
+            rises,
             shapes: shapes.collect(),
             coefficients: coefficients.into_iter().flatten().collect(),
             intervals: intervals.into_iter().flatten().collect(),
@@ -171,6 +176,7 @@ mod tests {
             verdict: Some(Verdict::Improved),
             coefficients: Vec::new(),
             intervals: Vec::new(),
+            rises: false,
         }
     }
 

@@ -1,14 +1,16 @@
-//! One record gets one verdict, whichever way it is judged: by the part of the crate that a device runs, by `fit` and by
-//! `diagnose`. The records come from a simulator of its own.
+//! One record gets one verdict, whichever way it is judged: by the part of the crate that a device runs, by `fit`, by
+//! `diagnose`, through a curve file, as a certificate, in a lot, on a page, and as an export. The records come from a simulator
+//! of its own.
 
 use allanite::{
     Axes, Scale,
     axis::{Courses, Moments},
 };
-use program::json;
+use program::{json, output, run};
 use rand::{RngExt as _, SeedableRng as _};
 use rand_distr::{Distribution as _, StandardNormal, StudentT};
 use rand_xoshiro::Xoshiro256PlusPlus;
+use serde_json::Value;
 use std::{collections::BTreeMap, f64::consts::TAU, fmt::Write as _, fs, path::Path};
 use tempfile::TempDir;
 
@@ -195,27 +197,72 @@ fn on_device(rows: &Rows) -> String {
     reason.map_or("-", |reason| reason.name()).into()
 }
 
-/// The same, by a command of the program.
-fn by(command: &str, folder: &Path) -> String {
-    let options = "--rate=100 --scale=0.01 --unit=deg/s --repeats=keep";
-    let arguments: Vec<&str> = [command, "log.csv"]
-        .into_iter()
-        .chain(options.split(' '))
-        .collect();
-    let document = json(folder, &arguments);
-    let axes = document["axes"].as_array().unwrap();
-    let reason = axes.iter().find_map(|axis| axis["reason"].as_str());
+/// The arguments of a command about the log, with more of them behind.
+fn about<'a>(command: &'a str, more: &[&'a str]) -> Vec<&'a str> {
+    let options = [
+        "--rate=100",
+        "--scale=0.01",
+        "--unit=deg/s",
+        "--repeats=keep",
+    ];
+    [&[command, "log.csv"], &options[..], more].concat()
+}
+
+/// The first reason among the axes of a document.
+fn first_reason(axes: &Value) -> String {
+    let mut axes = axes.as_array().unwrap().iter();
+    let reason = axes.find_map(|axis| axis["reason"].as_str());
     reason.unwrap_or("-").into()
 }
 
+/// Why the record is not valid, by each command of the program that says so.
+fn by_commands(folder: &Path) -> Vec<(&'static str, String)> {
+    let axes_of = |arguments: &[&str]| first_reason(&json(folder, arguments)["axes"]);
+    output(folder, &about("measure", &["--output=curve.json", "-q"]));
+    let written = ["--output=device.bin", "--device=one", "-q"];
+    output(folder, &about("certify", &written));
+    let decoded = json(folder, &["decode", "device.bin"]);
+    output(folder, &about("report", &["--output=page.html", "-q"]));
+    let page = fs::read_to_string(folder.join("page.html")).unwrap();
+    let on_page = page.split_once("\"reason\":\"").map(|(_, rest)| rest);
+    let on_page = on_page.and_then(|rest| rest.split('"').next());
+    vec![
+        ("fit", axes_of(&about("fit", &[]))),
+        ("diagnose", axes_of(&about("diagnose", &[]))),
+        ("curve file", axes_of(&["fit", "curve.json"])),
+        ("certificate", first_reason(&decoded["records"][0]["axes"])),
+        (
+            "lot",
+            first_reason(&json(folder, &about("lot", &["--limit=N=1"]))["invalid"]),
+        ),
+        (
+            "lot of certificates",
+            first_reason(&json(folder, &["lot", "device.bin", "--limit=N=1"])["invalid"]),
+        ),
+        ("page", on_page.unwrap_or("-").into()),
+    ]
+}
+
+/// Whether the noise of a record is exported for a filter, and whether it should be: no axis is one of a mixture.
+fn is_exported(folder: &Path) -> (bool, bool) {
+    let output = run(folder, &about("export", &["--format=csv"]));
+    let document = json(folder, &about("fit", &[]));
+    let mut axes = document["axes"].as_array().unwrap().iter();
+    let is_steady =
+        axes.all(|axis| axis["reason"].is_null() && axis["verdict"] != "not_stationary");
+    (output.status.success(), is_steady)
+}
+
 /// What each door says of a record.
-fn verdicts(folder: &Path, rows: &Rows) -> [String; 3] {
+fn verdicts(folder: &Path, rows: &Rows) -> Vec<(&'static str, String)> {
     let mut text = String::from("gx,gy,gz\n");
     for [x, y, z] in rows {
         writeln!(text, "{x},{y},{z}").unwrap();
     }
     fs::write(folder.join("log.csv"), text).unwrap();
-    [on_device(rows), by("fit", folder), by("diagnose", folder)]
+    let mut all = vec![("device", on_device(rows))];
+    all.extend(by_commands(folder));
+    all
 }
 
 /// What was counted of some records.
@@ -245,13 +292,14 @@ impl Count {
             for (noise, event) in disturbed.chain(sound) {
                 let samples = random.random_range(samples.clone());
                 let rows = record(noise, event, samples, &mut random);
-                let [device, fit, diagnosis] = verdicts(folder.path(), &rows);
+                let all = verdicts(folder.path(), &rows);
+                let fit = all[1].1.as_str();
                 count.records += 1;
                 let what = format!("{event:?} in {noise:?}, {samples} samples");
-                if device != fit || fit != diagnosis {
-                    count
-                        .unequal
-                        .push(format!("{what}: {device}, {fit}, {diagnosis}"));
+                let (is_exported, is_steady) = is_exported(folder.path());
+                if all.iter().any(|(_, said)| said != fit) || is_exported != is_steady {
+                    let unequal = format!("{what}: {all:?}, exported {is_exported}");
+                    count.unequal.push(unequal);
                 }
                 if (fit == "-") != (event == Event::Nothing) {
                     count.wrong.push(format!("{what}: {fit}"));
@@ -266,7 +314,7 @@ impl Count {
 }
 
 #[test]
-fn a_record_is_judged_alike_on_the_device_and_by_each_command() {
+fn a_record_is_judged_alike_by_every_door() {
     let count = Count::of(1, 1, 6_000..30_000);
     assert_eq!(count.unequal, [""; 0], "{count:?}");
     // Motion of hands and vehicles has the shape of filtered noise: not all of it is recognised.

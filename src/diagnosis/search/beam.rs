@@ -104,9 +104,8 @@ impl Growth {
             return ControlFlow::Continue(false);
         };
         solver.pass_all(beam, effects)?;
-        self.best = self.best.min(lowest(beam.as_slice()));
+        let (drifted, left) = self.drift(plain, solver, beam, effects, count, &[])?;
         // What is found behind another filter grows too.
-        let left = self.left(solver.observation.expected_deviance());
         self.cross(solver, beams, count, left)?;
         let Some((lower, higher)) = beams.split_at_mut_checked(count.saturating_add(1)) else {
             return ControlFlow::Continue(false);
@@ -114,21 +113,19 @@ impl Growth {
         let Some(beam) = lower.last_mut() else {
             return ControlFlow::Continue(false);
         };
-        self.best = self.best.min(lowest(beam.as_slice()));
-        let left = self.left(solver.observation.expected_deviance());
+        let (_, left) = self.drift(plain, solver, beam, effects, count, &drifted)?;
         let parents = self.parents(plain, beam.as_slice(), count, left);
         for parent in parents.iter().filter(|_| count < MOST) {
             solver.grow(parent, effects, &mut |hypothesis| {
                 let of = list::count(hypothesis.terms());
                 let later = of.checked_sub(count.saturating_add(1));
-                let pool = match later.and_then(|later| higher.get_mut(later)) {
-                    Some(pool) => pool,
-                    // A more general effect in the place of one of the parent's.
-                    None if of == count => &mut *beam,
-                    None => return Real::INFINITY,
-                };
-                pool.enter(hypothesis);
-                pool.bar()
+                match later.and_then(|later| higher.get_mut(later)) {
+                    Some(pool) => {
+                        pool.enter(hypothesis);
+                        pool.bar()
+                    }
+                    None => Real::INFINITY,
+                }
             })?;
         }
         let next = beams.get(count.saturating_add(1));
@@ -141,9 +138,33 @@ impl Growth {
         ControlFlow::Continue(next <= self.best + worse)
     }
 
-    /// What the best hypothesis of all leaves to explain.
-    fn left(&self, expected_deviance: Real) -> Real {
-        (self.best - expected_deviance).max(0.0)
+    /// Lets the oscillations of the best hypotheses of as many effects drift, those left out that were looked at before.
+    /// Returns the ones that were looked at, and what the best hypothesis of all leaves to explain.
+    fn drift<const B: usize>(
+        &mut self,
+        plain: &Hypothesis,
+        solver: &mut Solver<'_, '_, '_, B>,
+        beam: &mut Pool<BEAM>,
+        effects: &[&'static dyn Effect],
+        count: usize,
+        before: &[Hypothesis],
+    ) -> ControlFlow<(), (Vec<Hypothesis, { BEAM + CONTINUA }>, Real)> {
+        self.best = self.best.min(lowest(beam.as_slice()));
+        let left = (self.best - solver.observation.expected_deviance()).max(0.0);
+        let parents = self.parents(plain, beam.as_slice(), count, left);
+        for parent in parents.iter().filter(|_| count < MOST) {
+            if before
+                .iter()
+                .any(|other| other.score.to_bits() == parent.score.to_bits())
+            {
+                continue;
+            }
+            solver.drift(parent, effects, &mut |hypothesis| {
+                beam.enter(hypothesis);
+                beam.bar()
+            })?;
+        }
+        ControlFlow::Continue((parents, left))
     }
 
     /// The hypotheses of a beam, and those of the continuum with as many effects, that are worth another effect.

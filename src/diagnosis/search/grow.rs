@@ -93,6 +93,31 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
                 self.raise(&grown, bar);
             }
         }
+        for effect in effects.iter().copied().filter(|effect| is_added(*effect)) {
+            let mut added = hypothesis.added.iter();
+            if has_frequency(effect)
+                || is_drifting(effect)
+                || added.any(|term| term.effect.name() == effect.name())
+            {
+                continue;
+            }
+            if let Some(with) = self.scan_noise(effect, hypothesis)? {
+                let grown = self.refine(with, 10)?;
+                let bar = each(&grown);
+                self.raise(&grown, bar);
+            }
+        }
+        ControlFlow::Continue(())
+    }
+
+    /// Hands the hypothesis with a drifting oscillation in the place of one that stays at its frequency to `each`, as
+    /// [`grow`](Self::grow) does.
+    pub(super) fn drift(
+        &mut self,
+        hypothesis: &Hypothesis,
+        effects: &[&'static dyn Effect],
+        each: &mut dyn FnMut(&Hypothesis) -> Real,
+    ) -> ControlFlow<()> {
         for effect in effects
             .iter()
             .copied()
@@ -113,20 +138,6 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
                         }
                     }
                 }
-            }
-        }
-        for effect in effects.iter().copied().filter(|effect| is_added(*effect)) {
-            let mut added = hypothesis.added.iter();
-            if has_frequency(effect)
-                || is_drifting(effect)
-                || added.any(|term| term.effect.name() == effect.name())
-            {
-                continue;
-            }
-            if let Some(with) = self.scan_noise(effect, hypothesis)? {
-                let grown = self.refine(with, 10)?;
-                let bar = each(&grown);
-                self.raise(&grown, bar);
             }
         }
         ControlFlow::Continue(())

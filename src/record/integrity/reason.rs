@@ -4,6 +4,7 @@
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "storage", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "storage", serde(rename_all = "snake_case"))]
 #[non_exhaustive]
 pub enum Reason {
     /// The values change too seldom: the sensor or its reader hung, or the quanta are too coarse for the

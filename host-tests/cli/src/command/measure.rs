@@ -99,7 +99,7 @@ pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), 
     many::failed(failures)
 }
 
-/// Measures the curves of a log. A note tells of curves that are not valid, which the curve file does not.
+/// Measures the curves of a log. A note tells of curves that are not valid.
 fn measured(log: &Path, about_log: &LogArguments) -> Result<Vec<AxisCurve>, Failure> {
     let axes = record::read_with_evidence(log, about_log, &CovariateArguments::NONE)?;
     let curve = |(curve, evidence): (AxisCurve, Evidence)| {

@@ -70,6 +70,7 @@ impl AxisCurve {
             gaps,
             source: joined(parts.iter().map(|part| &part.source)),
             licence: joined(parts.iter().map(|part| &part.licence)),
+            invalid: parts.iter().find_map(|part| part.invalid),
             spectrum: spectrum(parts),
             course: match parts {
                 [only] => only.course.clone(),

@@ -64,6 +64,7 @@ impl AxisCurve {
         };
         let without = Self {
             pieces: None,
+            invalid: None,
             source: None,
             licence: None,
             ..self.clone()

@@ -110,6 +110,8 @@ struct Step {
     /// `chi2`, and what the rate follows of a covariate as long as that is not subtracted: it falls from step to step.
     error: f64,
     dof: usize,
+    /// The deviance of the fit, as that of `fit`.
+    deviance: f64,
     p_value: f64,
     /// The factor by which intervals and bounds are widened.
     birge_ratio: f64,
@@ -252,6 +254,7 @@ fn step(at: usize, step: &Taken<OCTAVES, BINS>, diagnosed: &Diagnosed, unit: Uni
         chi2: step.fit.chi_squared,
         error: diagnosed.chi_squared(at),
         dof: step.fit.degrees_of_freedom,
+        deviance: step.fit.deviance,
         p_value: step.fit.p_value,
         birge_ratio: step.fit.birge_ratio,
         rms_percent: step.comparison.rms_percent,

@@ -102,12 +102,7 @@ fn print_axis(diagnosed: &Diagnosed, output: &mut impl Write) -> io::Result<()> 
 
 /// χ² of the five terms, with the part that a covariate explains.
 fn beginning(diagnosed: &Diagnosed, fit: &Fit) -> String {
-    let of_curve = format!(
-        "{:.1}, {} degrees of freedom, p {}",
-        fit.chi_squared,
-        fit.degrees_of_freedom,
-        shown_p(fit.p_value)
-    );
+    let of_curve = format!("{}, p {}", words::goodness(fit), shown_p(fit.p_value));
     match diagnosed.dependence() {
         Some((channels, squares)) => format!(
             "χ² {:.1}: {of_curve}, and {squares:.1} of what follows {channels}",

@@ -35,7 +35,9 @@ pub struct Axis<'a> {
     pub chi2: Option<f64>,
     /// Its degrees of freedom.
     pub dof: Option<usize>,
-    /// The probability that χ² exceeds this one by chance.
+    /// The deviance, which is larger for a model that lies far above the curve; `None` if the method has no χ².
+    pub deviance: Option<f64>,
+    /// The probability that χ² or the deviance is as large by chance.
     pub p_value: Option<f64>,
     /// Whether the five terms explain a valid curve; `null` if the record does not tell, or the method does not.
     pub adequate: Option<bool>,
@@ -136,6 +138,7 @@ fn axis(fitted: &Fitted) -> Axis<'_> {
             .collect(),
         chi2: finite(fit.chi_squared),
         dof: finite(fit.chi_squared).map(|_| fit.degrees_of_freedom),
+        deviance: finite(fit.deviance),
         p_value: finite(fit.p_value),
         adequate: fitted.is_adequate(),
         verdict: judgement.as_ref().map(|judgement| judgement.name),

@@ -176,10 +176,7 @@ fn verdict(fitted: &Fitted) -> Vec<String> {
                 .into(),
         ];
     }
-    let mut first = format!(
-        "χ² {:.1}, {} degrees of freedom",
-        fit.chi_squared, fit.degrees_of_freedom
-    );
+    let mut first = format!("χ² {}", words::goodness(fit));
     if fit.p_value.is_finite() {
         first += &format!(", p {}", probability(fit.p_value));
     }

@@ -3,13 +3,18 @@
 use super::{Measurement, quantile_above};
 use statrs::distribution::{ContinuousCDF as _, Normal};
 
-/// A device beside a limit, by the rule of guarded acceptance and guarded rejection (JCGM 106:2012, 8.3).
+/// A device beside a limit, by the rule of guarded acceptance and guarded rejection (JCGM 106:2012, 8.3), the best decision
+/// first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Decision {
     /// The probability that the coefficient is above the limit is at most the risk.
     Passed,
-    /// The record is too short to tell, or the coefficient is not observable.
+    /// The record is too short to tell.
     Guarded,
+    /// No model explains the record, so that no interval says anything about a limit.
+    Misfit,
+    /// The record is not one of a gyro at rest.
+    Invalid,
     /// The probability that the coefficient is within the limit is at most the risk.
     Failed,
 }
@@ -38,12 +43,10 @@ impl Measurement {
     /// largest probability that the decision is wrong.
     pub fn decision(&self, limit: f64, error: f64, risk: f64) -> Decision {
         let conformity = self.conformity(limit, error);
-        if !self.is_observable {
-            return Decision::Guarded;
-        }
+        // What cannot exceed the whole curve keeps a limit above it, although the record does not show it.
         if 1.0 - conformity <= risk {
             Decision::Passed
-        } else if conformity <= risk {
+        } else if self.is_observable && conformity <= risk {
             Decision::Failed
         } else {
             Decision::Guarded

@@ -49,6 +49,7 @@ struct Axis {
     coefficients: Vec<Coefficient>,
     chi2: Option<f64>,
     dof: Option<u32>,
+    deviance: Option<f64>,
     p_value: Option<f64>,
     adequate: Option<bool>,
     verdict: Option<String>,

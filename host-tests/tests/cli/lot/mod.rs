@@ -174,24 +174,40 @@ fn bad_devices_are_named_and_no_others(lot: &Value) {
 }
 
 #[test]
-fn a_device_whose_record_is_not_valid_is_not_judged() {
+fn a_device_whose_record_is_not_valid_or_not_explained_is_not_judged() {
     let usual = Preset::Mems.coefficients();
     let Lot {
         folder, mut now, ..
-    } = lot(3, 0, |device, _| {
+    } = lot(4, 0, |device, _| {
         let mut one = certificate(device, usual, 0.0, device);
         if device == 1 {
             let (hits, samples) = (300, one.conditions.samples);
             one.axes[0].verdict = Some(Verdict::Invalid(Reason::Railed { hits, samples }));
+        }
+        if device == 2 {
+            one.axes[0].verdict = Some(Verdict::Unexplained);
         }
         one
     });
     now.splice(0..0, ["lot", "--limit", "N=1"].map(String::from));
     let arguments: Vec<&str> = now.iter().map(String::as_str).collect();
     let lot = json(folder.path(), &arguments);
-    assert_eq!((count(&lot["passed"]), count(&lot["guarded"])), (2, 1));
-    assert_eq!(lot["invalid"][0]["device"], "SN-0001");
-    assert_eq!(count(&lot["limits"][0]["measured"]), 2);
+    // As `fit --limit` decides: a longer record would not help.
+    let decided = ["passed", "guarded", "misfit", "not_valid", "failed"];
+    let decided = decided.map(|decision| count(&lot[decision]));
+    assert_eq!(decided, [2, 0, 1, 1, 0]);
+    let invalid = &lot["invalid"][0];
+    assert_eq!(
+        (&invalid["device"], &invalid["reason"]),
+        (&"SN-0001".into(), &"railed".into())
+    );
+    assert_eq!(lot["unexplained"][0]["device"], "SN-0002");
+    assert_eq!(count(&lot["limits"][0]["measured"]), 3);
+    let text = output(folder.path(), &arguments);
+    assert!(
+        text.contains("1 not explained, 1 not valid, 0 fail"),
+        "{text}"
+    );
 }
 
 #[test]

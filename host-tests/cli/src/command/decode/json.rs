@@ -3,6 +3,7 @@
 use super::decoded::{self, Decoded, Stored, StoredSnapshot};
 use allanite::{
     diagnosis::Verdict,
+    integrity::Reason,
     storage::{
         self, AxisCertificate, Certificate, CertifiedBand, CertifiedLimit, CertifiedSlope,
         CertifiedState, CertifiedTerm,
@@ -43,7 +44,9 @@ struct Device {
 struct Axis {
     axis: String,
     verdict: Option<&'static str>,
-    reason: Option<String>,
+    /// Why the record is not valid, in a sentence and in a word.
+    invalid: Option<String>,
+    reason: Option<&'static str>,
     found: Vec<&'static str>,
     coefficients: Vec<Term>,
     /// Covariance of the squared coefficients, as a lower triangle.
@@ -154,13 +157,15 @@ fn device(file: &Path, record: &Certificate) -> Device {
 fn axis(name: String, axis: &AxisCertificate, unit: Unit) -> Axis {
     let (count, findings) = (axis.terms.len(), &axis.findings);
     let row = |i: usize| (0..=i).map(|j| axis.covariance(i, j)).collect();
+    let reason = match axis.verdict {
+        Some(Verdict::Invalid(reason)) => Some(reason),
+        _ => None,
+    };
     Axis {
         axis: name,
         verdict: axis.verdict.map(Verdict::name),
-        reason: match axis.verdict {
-            Some(Verdict::Invalid(reason)) => Some(reason.to_string()),
-            _ => None,
-        },
+        invalid: reason.map(|reason| reason.to_string()),
+        reason: reason.as_ref().map(Reason::name),
         found: axis.found().map(|term| term.effect.name()).collect(),
         coefficients: axis.terms.iter().map(|one| term(one, unit)).collect(),
         covariance: (0..count).map(row).collect(),

@@ -34,6 +34,9 @@ pub(super) struct Lot {
     /// Devices by their worst coefficient.
     pub(super) passed: usize,
     pub(super) guarded: usize,
+    /// Devices of which no model explains an axis, and those with a record that is not valid: nothing is decided of these.
+    pub(super) misfit: usize,
+    pub(super) not_valid: usize,
     pub(super) failed: usize,
     /// The share of devices that passed, and the ends of its 95 % interval (Clopper & Pearson 1934).
     pub(super) yield_share: f64,
@@ -43,8 +46,8 @@ pub(super) struct Lot {
     /// Coefficients in a guard band: a longer record may decide. The text tells their number only.
     pub(super) undecided: Vec<Undecided>,
     /// Axes whose records are not valid. Nothing is decided of them, and they are left out of all that follows.
-    pub(super) invalid: Vec<Named>,
-    /// Axes that a diagnosis did not explain. Their intervals are wider for it.
+    pub(super) invalid: Vec<Invalid>,
+    /// Axes that a diagnosis did not explain. Nothing is decided of these either.
     pub(super) unexplained: Vec<Named>,
     pub(super) outliers: Vec<Outlier>,
     /// The number of devices of which there is an earlier certificate.
@@ -85,6 +88,16 @@ pub(super) struct Named {
     pub(super) axis: String,
 }
 
+/// An axis whose record is not valid.
+#[derive(Serialize)]
+pub(super) struct Invalid {
+    pub(super) device: String,
+    pub(super) axis: String,
+    /// Why, in a word and in a sentence.
+    pub(super) reason: &'static str,
+    pub(super) words: String,
+}
+
 impl Lot {
     /// Judges devices by the rules of their limits at a risk, and compares them with their earlier certificates. Of several earlier ones of a
     /// device the last one counts.
@@ -97,12 +110,8 @@ impl Lot {
     ) -> Self {
         let worst = |device: &Device| {
             let axes = 0..device.certificate.axes.len();
-            let decisions = axes.flat_map(|axis| {
-                rules.iter().map(move |rule| {
-                    let known = device.measurement((axis, rule.limit.effect.name()));
-                    rule.decision(axis, known)
-                })
-            });
+            let decisions =
+                axes.flat_map(|axis| rules.iter().map(move |rule| device.decision(axis, rule)));
             // A certificate without axes says nothing.
             decisions.max().unwrap_or(Decision::Guarded)
         };
@@ -120,6 +129,8 @@ impl Lot {
             risk,
             passed,
             guarded: count(Decision::Guarded),
+            misfit: count(Decision::Misfit),
+            not_valid: count(Decision::Invalid),
             failed: count(Decision::Failed),
             yield_share: share,
             // At either end lies half of the 5 %.
@@ -127,7 +138,7 @@ impl Lot {
             limits: rows.collect(),
             failures: failures(devices, rules),
             undecided: undecided(devices, rules),
-            invalid: named(devices, |verdict| matches!(verdict, Verdict::Invalid(_))),
+            invalid: invalid(devices),
             unexplained: named(devices, |verdict| {
                 matches!(verdict, Verdict::Unexplained | Verdict::Incomplete)
             }),
@@ -151,6 +162,23 @@ fn named(devices: &[Device], wanted: fn(Verdict) -> bool) -> Vec<Named> {
     axes.collect()
 }
 
+/// The axes whose records are not valid.
+fn invalid(devices: &[Device]) -> Vec<Invalid> {
+    let axes = devices.iter().flat_map(|device| {
+        let axes = device.certificate.axes.iter().enumerate();
+        axes.filter_map(|(place, axis)| match axis.verdict {
+            Some(Verdict::Invalid(reason)) => Some(Invalid {
+                device: device.id.clone(),
+                axis: decode::axis_name(place),
+                reason: reason.name(),
+                words: reason.to_string(),
+            }),
+            _ => None,
+        })
+    });
+    axes.collect()
+}
+
 /// Devices beyond their limits, the farthest one first.
 fn failures(devices: &[Device], rules: &[Rule]) -> Vec<Failing> {
     let mut failures: Vec<(f64, Failing)> = Vec::new();
@@ -160,7 +188,7 @@ fn failures(devices: &[Device], rules: &[Rule]) -> Vec<Failing> {
             let Some((rule, known)) = rule.zip(Measurement::of(term)) else {
                 continue;
             };
-            if rule.decision(axis, Some(known)) == Decision::Failed {
+            if device.decision(axis, rule) == Decision::Failed {
                 let failing = Failing {
                     device: device.id.clone(),
                     axis: decode::axis_name(axis),
@@ -182,8 +210,7 @@ fn undecided(devices: &[Device], rules: &[Rule]) -> Vec<Undecided> {
         for axis in 0..device.certificate.axes.len() {
             for rule in rules {
                 let effect = rule.limit.effect.name();
-                let known = device.measurement((axis, effect));
-                if rule.decision(axis, known) == Decision::Guarded {
+                if device.decision(axis, rule) == Decision::Guarded {
                     undecided.push(Undecided {
                         device: device.id.clone(),
                         axis: decode::axis_name(axis),

@@ -27,6 +27,8 @@ pub(super) struct Limited {
     pub(super) guard_band: Option<f64>,
     pub(super) passed: usize,
     pub(super) guarded: usize,
+    pub(super) misfit: usize,
+    pub(super) not_valid: usize,
     pub(super) failed: usize,
     /// How many of those that passed are expected to be above the limit, by their own uncertainties.
     pub(super) expected_false_passes: f64,
@@ -97,13 +99,15 @@ impl Limited {
         let with_axis = devices
             .iter()
             .filter(|device| device.certificate.axes.len() > axis);
-        let known: Vec<Option<Measurement>> =
-            with_axis.map(|device| device.measurement(place)).collect();
-        let decided: Vec<(Decision, f64)> = known
+        let of_axis: Vec<(Decision, Option<Measurement>)> = with_axis
+            .map(|device| (device.decision(axis, rule), device.measurement(place)))
+            .collect();
+        let known: Vec<Option<Measurement>> = of_axis.iter().map(|(_, known)| *known).collect();
+        let decided: Vec<(Decision, f64)> = of_axis
             .iter()
-            .map(|one| {
+            .map(|(decision, one)| {
                 let conformity = one.map_or(0.5, |one| one.conformity(limit.value, error));
-                (rule.decision(axis, *one), conformity)
+                (*decision, conformity)
             })
             .collect();
         let with = |wanted| decided.iter().filter(move |(one, _)| *one == wanted);
@@ -121,15 +125,22 @@ impl Limited {
             guard_band: accepted.map(|accepted| limit.value - accepted),
             passed: with(Decision::Passed).count(),
             guarded: with(Decision::Guarded).count(),
+            misfit: with(Decision::Misfit).count(),
+            not_valid: with(Decision::Invalid).count(),
             failed: with(Decision::Failed).count(),
-            expected_false_passes: with(Decision::Passed).map(|(_, within)| 1.0 - within).sum(),
-            expected_false_failures: with(Decision::Failed).map(|(_, within)| within).sum(),
+            expected_false_passes: total(with(Decision::Passed).map(|(_, within)| 1.0 - within)),
+            expected_false_failures: total(with(Decision::Failed).map(|(_, within)| *within)),
             measured: values.values().len(),
             percentiles: percentiles(&values),
             cpk: capability.map(|one| one.value),
             cpk_interval: capability.map(|one| one.interval),
         }
     }
+}
+
+/// The sum of numbers. That of none by `sum` is −0, which is printed so.
+fn total(numbers: impl Iterator<Item = f64>) -> f64 {
+    numbers.fold(0.0, |sum, number| sum + number)
 }
 
 fn percentiles(values: &Sample) -> Option<[f64; 3]> {

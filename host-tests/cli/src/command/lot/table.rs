@@ -74,6 +74,8 @@ pub(super) const fn name(decision: Decision) -> &'static str {
     match decision {
         Decision::Passed => "pass",
         Decision::Guarded => "guard_band",
+        Decision::Misfit => "misfit",
+        Decision::Invalid => "invalid",
         Decision::Failed => "fail",
     }
 }
@@ -219,7 +221,7 @@ fn measurement(row: &Row<'_>, effect: &dyn Effect) -> Option<Measurement> {
 }
 
 fn decision(row: &Row<'_>, rule: &Rule) -> Decision {
-    rule.decision(row.axis, measurement(row, rule.limit.effect))
+    row.device.decision(row.axis, rule)
 }
 
 /// What is known of a coefficient: its value, its interval, and what its limit says.

@@ -14,11 +14,13 @@ pub(super) fn print(lot: &Lot, output: &mut impl Write) -> io::Result<()> {
     let [low, high] = lot.yield_interval.map(percent);
     writeln!(
         output,
-        "{} device{}: {} pass, {} in a guard band, {} fail",
+        "{} device{}: {} pass, {} in a guard band, {}{}{} fail",
         lot.devices,
         if lot.devices == 1 { "" } else { "s" },
         lot.passed,
         lot.guarded,
+        if_any(lot.misfit, "not explained"),
+        if_any(lot.not_valid, "not valid"),
         lot.failed
     )?;
     writeln!(
@@ -38,11 +40,14 @@ pub(super) fn print(lot: &Lot, output: &mut impl Write) -> io::Result<()> {
         )
     })?;
     list(output, "not valid, not judged", &lot.invalid, |one| {
-        format!("{} {}", one.device, one.axis)
+        format!("{} {}: {}", one.device, one.axis, one.words)
     })?;
-    list(output, "not explained", &lot.unexplained, |one| {
-        format!("{} {}", one.device, one.axis)
-    })?;
+    list(
+        output,
+        "not explained, not judged",
+        &lot.unexplained,
+        |one| format!("{} {}", one.device, one.axis),
+    )?;
     list(output, "outliers", &lot.outliers, |one| {
         let place = place(&one.device, &one.axis, one.effect);
         let (value, median) = (number(one.value), number(one.median));
@@ -89,6 +94,14 @@ pub(super) fn print(lot: &Lot, output: &mut impl Write) -> io::Result<()> {
     Ok(())
 }
 
+/// So many devices, where there are some.
+fn if_any(number: usize, what: &str) -> String {
+    match number {
+        0 => String::new(),
+        number => format!("{number} {what}, "),
+    }
+}
+
 fn place(device: &str, axis: &str, effect: &str) -> String {
     format!("{device} {axis}: {}", plain(effect))
 }
@@ -96,7 +109,16 @@ fn place(device: &str, axis: &str, effect: &str) -> String {
 /// What is decided: one row for each limit of each axis.
 fn limits(lot: &Lot) -> Table {
     let header = [
-        "", "", "limit", "accept", "", "pass", "guard", "fail", "wrong",
+        "",
+        "",
+        "limit",
+        "accept",
+        "",
+        "pass",
+        "guard",
+        "undecided",
+        "fail",
+        "wrong",
     ];
     let rows = lot.limits.iter().map(|one| {
         let wrong = one.expected_false_passes + one.expected_false_failures;
@@ -108,11 +130,12 @@ fn limits(lot: &Lot) -> Table {
             one.unit.clone(),
             one.passed.to_string(),
             one.guarded.to_string(),
+            (one.misfit + one.not_valid).to_string(),
             one.failed.to_string(),
             format!("{wrong:.1}"),
         ]
     });
-    table(&header, rows, &[2, 3, 5, 6, 7, 8])
+    table(&header, rows, &[2, 3, 5, 6, 7, 8, 9])
 }
 
 /// How the devices are distributed: one row for each limit of each axis.

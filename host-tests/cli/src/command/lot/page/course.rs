@@ -46,6 +46,7 @@ pub(super) fn in_order(quantity: &Quantity<'_>) -> Markup {
         } @else {
             (dots("pass", placed(Decision::Passed)))
             (dots("guard", placed(Decision::Guarded)))
+            (dots("none", placed(Decision::Misfit)))
         }
         (dots(if is_grouped { "fail small" } else { "fail" }, placed(Decision::Failed)))
         @let y = at(scale.place(quantity.limit));

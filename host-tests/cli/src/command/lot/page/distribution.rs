@@ -12,9 +12,10 @@ use allanite_host::{
 use maud::{Markup, html};
 
 /// The decisions in the order in which they are stacked, with their classes.
-const STACKED: [(Decision, &str); 3] = [
+const STACKED: [(Decision, &str); 4] = [
     (Decision::Passed, "pass"),
     (Decision::Guarded, "guard"),
+    (Decision::Misfit, "none"),
     (Decision::Failed, "fail"),
 ];
 

@@ -64,7 +64,8 @@ pub fn print(fitted: &[Fitted], output: &mut impl Write) -> io::Result<()> {
 }
 
 /// The table of a fit, which fits into 80 columns: one row for each coefficient, and below them the lengths of records
-/// that would show those that this one does not show.
+/// that would show those that this one does not show, if they are as large as it allows. No record promises more: whether a
+/// random walk shows depends on how large it is.
 pub fn table(fit: &Fit, unit: Unit) -> String {
     let mut table = Table::new();
     table.load_style(NOTHING);
@@ -83,7 +84,14 @@ pub fn table(fit: &Fit, unit: Unit) -> String {
             return None;
         };
         let name = words::of_sensor(coefficient.name, unit);
-        Some(format!("{name} in {}", duration(after_s?)))
+        let (upper, unit) = (
+            number(coefficient.upper),
+            units::unit(unit, coefficient.half_seconds),
+        );
+        Some(format!(
+            "{name} above {upper} {unit} in {}",
+            duration(after_s?)
+        ))
     });
     let needed: Vec<String> = needed.collect();
     let rows = table.trim_fmt();
@@ -156,8 +164,8 @@ pub fn state(coefficient: &Coefficient) -> String {
         State::NotObservable {
             after_s: Some(after_s),
         } => {
-            let length = duration(after_s);
-            format!("not observable; a record of {length} would show it")
+            let (length, upper) = (duration(after_s), number(coefficient.upper));
+            format!("not observable; a record of {length} would show it above {upper}")
         }
     }
 }

@@ -29,7 +29,7 @@ pub(crate) fn cases() -> Vec<Case> {
         "[".repeat(100_000) => "not a curve file";
         text[..text.len() / 2].into() => "not a curve file: EOF";
         with("/format", json!("\u{1b}[2J")) => "the format is";
-        with("/version", json!(99)) => "a.json: the format has version 99, but this program reads versions 1 to 5; ";
+        with("/version", json!(99)) => "a.json: the format has version 99, but this program reads versions 1 to 6; ";
         with("/axes/0/rate_hz", json!(1e300)) => "rate_hz 1.000e300 is impossible";
         with("/axes/0/rate_per_count", json!(1e-300)) => follows;
         with("/axes/0/unit", json!("furlong/s")) => "unknown variant";

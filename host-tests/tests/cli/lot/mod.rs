@@ -12,7 +12,7 @@ use devices::{
     BEFORE, DEVICES, Lot, certificate, encoded, has_become_noisy, has_begun_to_walk, has_line,
     is_noisy, is_unstable, lot, name, truth,
 };
-use program::{command, json, number, refusal, rows};
+use program::{command, json, number, output, refusal, rows};
 use rayon::prelude::*;
 use serde_json::Value;
 use std::{collections::BTreeSet, fs};

@@ -200,8 +200,9 @@ fn terms(axis: &AxisCertificate, unit: Unit) -> Table {
                 CertifiedState::NotObservable {
                     after_s: Some(after_s),
                 } => format!(
-                    "not observable; a record of {} would show it",
-                    duration(after_s.into())
+                    "not observable; a record of {} would show it above {}",
+                    duration(after_s.into()),
+                    number(f64::from(term.upper))
                 ),
             },
             shape(term, effect),

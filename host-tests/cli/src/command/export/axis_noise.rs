@@ -9,7 +9,7 @@ use allanite::{Coefficient, Comparison, Record, Scale, course::Course, fit::Stat
 use allanite_host::{
     confidence::{Limits, limits},
     equivalent::Equivalent,
-    number::duration,
+    number::{duration, number},
     overbound::{GaussMarkovProcess, Overbound},
 };
 use allanite_log::{BINS, OCTAVES};
@@ -321,8 +321,9 @@ fn usable(coefficient: &Coefficient) -> Given {
         State::NotObservable { after_s } => Given::Missing {
             why: match after_s {
                 Some(after_s) => format!(
-                    "not observable in this record; a record of {} would show it",
-                    duration(after_s)
+                    "not observable in this record; a record of {} would show it above {}",
+                    duration(after_s),
+                    number(coefficient.upper)
                 ),
                 None => "not observable in this record".into(),
             },

@@ -107,7 +107,7 @@ pub(super) fn fit<const K: usize, const B: usize>(
         shape: heapless::Vec::new(),
         chi_squared,
         degrees_of_freedom,
-        deviance: chi_squared,
+        deviance: Real::NAN,
         p_value: chi_squared_tail(chi_squared, degrees_of_freedom),
         peak: None,
         minus_two_log_likelihood: Real::NAN,

@@ -40,13 +40,14 @@ pub struct Fit {
     /// χ²: the squared residuals in units of their covariance, `r'C⁻¹r − 2 Σ(measured/model − 1)`. The sum corrects for
     /// the covariance, which follows the measurement (Farrington 1996). NaN for `Ordinary`, `AccuratePart` and
     /// `ClusterCount`, which have no error model. Too large for `RelativeAccuracy`, which takes the octaves for
-    /// independent. Where the probability of the [deviance](Self::deviance) is less than a tenth of that of χ², it is the deviance.
+    /// independent. Where a true model has so large a [deviance](Self::deviance) in less than one of a thousand records, it is the
+    /// deviance, which falls with each effect that is added.
     pub chi_squared: Real,
     /// The number of octaves that the method uses, less the number of coefficients above zero and of their fitted shape
     /// parameters.
     pub degrees_of_freedom: usize,
     /// The squared deviance residuals in units of their correlation. It is about as large as χ² for a true model, and larger
-    /// for one that lies far above the measurement, which χ² by the model's own covariance hardly sees. NaN where χ² is NaN.
+    /// for one that lies far above the measurement, which χ² by the model's own covariance hardly sees. NaN for all methods but `Covariance`.
     pub deviance: Real,
     /// Probability of a larger χ² if the model is true; ten times that probability where it is the deviance. NaN without χ² or
     /// without degrees of freedom.
@@ -89,11 +90,6 @@ impl Fit {
     pub fn is_adequate(&self) -> Option<bool> {
         let is_high = self.peak.is_some_and(|peak| peak.is_significant());
         (!self.p_value.is_nan()).then_some(self.p_value >= ADEQUATE_P && !is_high)
-    }
-
-    /// Whether [χ²](Self::chi_squared) is the [deviance](Self::deviance): the model lies above the measurement.
-    pub fn is_judged_by_deviance(&self) -> bool {
-        self.chi_squared.to_bits() == self.deviance.to_bits()
     }
 
     /// The squared coefficients, for [`Model::variance`](crate::Model::variance).

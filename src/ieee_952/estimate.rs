@@ -60,14 +60,14 @@ impl Scale {
     }
 }
 
-/// The factor by which errors are widened if χ² or the deviance is too large to be one of an adequate model.
-pub(super) fn widened(chi_squared: f32, deviance: f32, degrees_of_freedom: usize) -> f32 {
-    let by_chi_squared = birge_ratio(chi_squared, degrees_of_freedom);
+/// χ², or the deviance where no chance explains it, and the factor by which errors are widened if it is too large to be one of an
+/// adequate model.
+pub(super) fn judged(chi_squared: f32, deviance: f32, degrees_of_freedom: usize) -> (f32, f32) {
     let by_deviance = beyond(deviance, degrees_of_freedom, INADEQUATE_DEVIANCE);
-    if by_chi_squared < by_deviance {
-        by_deviance
+    if 1.0 < by_deviance {
+        (deviance, by_deviance)
     } else {
-        by_chi_squared
+        (chi_squared, birge_ratio(chi_squared, degrees_of_freedom))
     }
 }
 

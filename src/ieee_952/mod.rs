@@ -57,7 +57,7 @@ use crate::{
     evidence::record::Record,
     fit::{ADEQUATE_P, coefficient::Coefficient},
     numerics::{
-        deviance::judged,
+        deviance::p_value,
         real::{Real, real},
     },
 };
@@ -75,7 +75,7 @@ const TOLERANCE: f32 = 0.01;
 pub struct Fit {
     /// Quantization, angle random walk, bias instability, rate random walk and rate ramp.
     pub coefficients: [Coefficient; TERMS],
-    /// χ² of the octaves, as that of the [general fit](crate::fit::Fit::chi_squared), but never the deviance.
+    /// χ² of the octaves or their deviance, as that of the [general fit](crate::fit::Fit::chi_squared).
     pub chi_squared: Real,
     /// The deviance of the octaves, as that of the [general fit](crate::fit::Fit::deviance).
     pub deviance: Real,
@@ -92,7 +92,7 @@ impl Fit {
     /// The probability of a larger χ² or deviance if the five terms explain the curve, as that of the
     /// [general fit](crate::fit::Fit::p_value); NaN without degrees of freedom.
     pub fn p_value(&self) -> Real {
-        judged(self.chi_squared, self.deviance, self.degrees_of_freedom).1
+        p_value(self.chi_squared, self.deviance, self.degrees_of_freedom)
     }
 
     /// Whether the five terms explain the curve: the [p-value](Self::p_value) is [`ADEQUATE_P`] or more. `None` without
@@ -138,7 +138,7 @@ pub(crate) fn fit_curve<const K: usize>(curve: &Curve<K>) -> Result<Fit, Error> 
     }
     let degrees_of_freedom = degrees(&tableau);
     let deviance = rows.deviance(&squares);
-    let birge_ratio = estimate::widened(chi_squared, deviance, degrees_of_freedom);
+    let (chi_squared, birge_ratio) = estimate::judged(chi_squared, deviance, degrees_of_freedom);
     let scale = estimate::Scale::new(reference, curve.interval_s(), rows.units);
     Ok(Fit {
         chi_squared: real(chi_squared),

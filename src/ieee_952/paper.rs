@@ -47,7 +47,7 @@ pub fn fit_by_relative_accuracy<'a, const K: usize, const B: usize>(
     }
     Ok(Fit {
         chi_squared: real(residuals - fall),
-        deviance: real(residuals - fall),
+        deviance: real(f32::NAN),
         degrees_of_freedom: points.len().saturating_sub(TERMS),
         tolerance: 0.0,
         birge_ratio: 1.0,

@@ -47,6 +47,7 @@ fn the_small_fit_has_the_numbers_of_the_general_one() {
             }
         }
         chi_squared.push(double(general.chi_squared - small.chi_squared).abs());
+        chi_squared.push(double(general.deviance - small.deviance).abs());
         assert_eq!(general.is_adequate(), small.is_adequate());
         assert_eq!(general.birge_ratio > 1.0, small.birge_ratio > 1.0);
     }
@@ -59,6 +60,29 @@ fn the_small_fit_has_the_numbers_of_the_general_one() {
         "{chi_squared:?}"
     );
     assert!(states >= 196, "{states} of 200");
+}
+
+/// A walk that does not go on: the curve of a random walk whose longest octaves are far below it, as a rate that returns makes
+/// it. Their standard errors follow the model, so that they add no more than one each to χ².
+#[test]
+fn terms_that_are_far_above_the_longest_octaves_do_not_explain_the_curve() {
+    let squares = [0.0, 1e-2, 0.0, 3e-3, 0.0].map(real);
+    for (fall, is_adequate) in [(1.0, true), (0.02, false)] {
+        let octaves = (0..14_u32).map(|k| {
+            let variance = Model::ieee_952().variance(&squares, 1 << k, 0.01);
+            let factor = if k >= 11 { fall } else { 1.0 };
+            let stride = u64::from(((1_u32 << k) / 4).max(1));
+            (1 << k, 65_536 / stride - 7, variance * real(factor))
+        });
+        let curve = Curve::<14>::new(100.0, octaves).expect("a curve");
+        let small = fit(&curve).expect("a fit");
+        let general = crate::fit::fit(&curve, &Model::ieee_952(), Options::default());
+        let general = general.expect("a fit");
+        assert_eq!(small.is_adequate(), Some(is_adequate), "{small:?}");
+        assert_eq!(general.is_adequate(), Some(is_adequate), "{general:?}");
+        assert_eq!(small.birge_ratio > 1.0, !is_adequate, "{small:?}");
+        assert_eq!(general.birge_ratio > 1.0, !is_adequate, "{general:?}");
+    }
 }
 
 #[test]

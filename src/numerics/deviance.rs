@@ -5,20 +5,40 @@
 //! `x` times its model grows without limit on both sides, and its signed root is nearly normal.
 
 use super::{chi_squared::chi_squared_tail, math::root, real::Real};
+use crate::limits;
 use core::f32::consts::LN_2;
 
-/// The deviance decides only where its probability is this many times smaller than that of χ², so that true models are called
-/// inadequate in hardly more records than by χ² alone.
+/// The probability of a deviance below which it judges the model, a tenth of that at which a model is not adequate: true models
+/// are called inadequate in hardly more records than by χ² alone.
+const LEAST_P: Real = 0.1 * limits::ADEQUATE_P as Real;
+
+/// The factor between the two.
 const DOUBT: Real = 10.0;
 
-/// What a model is judged by: χ² of its residuals or the deviance, and the probability of a larger one.
+/// What a model is judged by: χ² of its residuals, or the deviance where no chance explains it; and the probability of a larger
+/// one.
+///
+/// χ² compares models of one curve badly, because each has the covariance of its own: where a model that is far from the curve
+/// gets one effect more, the errors of some rows fall, and χ² may rise. The deviance falls.
 pub(crate) fn judged(chi_squared: Real, deviance: Real, degrees_of_freedom: usize) -> (Real, Real) {
-    let by_chi_squared = chi_squared_tail(chi_squared, degrees_of_freedom);
-    let by_deviance = DOUBT * chi_squared_tail(deviance, degrees_of_freedom);
-    if by_deviance < by_chi_squared {
-        (deviance, by_deviance)
+    let by_deviance = chi_squared_tail(deviance, degrees_of_freedom);
+    if by_deviance < LEAST_P {
+        (deviance, DOUBT * by_deviance)
     } else {
-        (chi_squared, by_chi_squared)
+        (
+            chi_squared,
+            chi_squared_tail(chi_squared, degrees_of_freedom),
+        )
+    }
+}
+
+/// The probability of the one that judged.
+pub(crate) fn p_value(judged: Real, deviance: Real, degrees_of_freedom: usize) -> Real {
+    let tail = chi_squared_tail(judged, degrees_of_freedom);
+    if judged.to_bits() == deviance.to_bits() {
+        DOUBT * tail
+    } else {
+        tail
     }
 }
 

@@ -5,6 +5,7 @@ use crate::{
     ieee_952,
     ieee_952::TERMS,
     numerics::real::Real,
+    record::axis::gate::HELD,
 };
 use heapless::Vec;
 
@@ -34,7 +35,8 @@ pub struct Plan {
     pub false_fail: Real,
     /// The length of the record at the first look, in seconds.
     pub shortest_s: Real,
-    /// The length of the record at the last look, in seconds.
+    /// The length of the record at the last look, in seconds. The look is due up to 128 samples, or a sixteenth of the record,
+    /// before: a gate holds back the last samples, and a station that stops after this time must have a verdict.
     pub longest_s: Real,
 }
 
@@ -106,7 +108,8 @@ impl Plan {
                 most_s: most as Real / scale.rate_hz(),
             });
         }
-        Ok((first, last))
+        let last = last.saturating_sub(last.wrapping_shr(4).min(HELD as u64));
+        Ok((first.min(last), last))
     }
 }
 

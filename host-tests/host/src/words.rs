@@ -470,12 +470,8 @@ mod tests {
     }
 }
 
-/// χ² of a fit with its degrees of freedom. Where it is the deviance, this is said: readers may look for χ² of the residuals.
+/// χ² of a fit with its degrees of freedom.
 pub fn goodness(fit: &Fit) -> String {
     let (chi_squared, degrees) = (fit.chi_squared, fit.degrees_of_freedom);
-    let deviance = match fit.is_judged_by_deviance() {
-        true => " by the deviance",
-        false => "",
-    };
-    format!("{chi_squared:.1}{deviance}, {degrees} degrees of freedom")
+    format!("{chi_squared:.1}, {degrees} degrees of freedom")
 }

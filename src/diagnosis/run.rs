@@ -317,7 +317,7 @@ impl<'a, const K: usize, const B: usize> Diagnosis<'a, K, B> {
             self.record.kurtosis,
             self.effects,
             found,
-            self.step.fit.tolerance,
+            (self.step.fit.chi_squared, self.step.fit.tolerance),
             pause,
         )?;
         self.story = Some(told);

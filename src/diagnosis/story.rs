@@ -1,6 +1,7 @@
 //! The way from the first model to the one that was found: one effect a step, the largest fall of the error first.
 
 use super::{
+    falling::fall,
     mirror::{Mirrored, tell_from_mirror},
     polish::polished,
     search::{
@@ -60,7 +61,7 @@ impl Story {
     }
 
     /// Tells what a search has found: refines the shapes with the covariance of a fit, lets the kurtosis decide between
-    /// effects of one spectrum, and sorts the effects by what they explain.
+    /// effects of one spectrum, and sorts the effects by what they explain. `without` is the error of the model without them.
     // What a story is made of has no smaller unit.
     #[allow(clippy::too_many_arguments)]
     #[inline(never)]
@@ -71,7 +72,7 @@ impl Story {
         kurtosis: Option<&Kurtosis<K>>,
         effects: &[&'static dyn Effect],
         found: Found,
-        tolerance: Real,
+        (without, tolerance): (Real, Real),
         pause: &mut Pause<'_>,
     ) -> Result<Self, Stop> {
         let mut best = found.best;
@@ -87,10 +88,11 @@ impl Story {
         for (term, polished) in best.filter.iter_mut().chain(&mut best.added).zip(polished) {
             *term = *polished;
         }
-        let ControlFlow::Continue(ordered) = ordered(observation, model, effects, &best, pause)
+        let ControlFlow::Continue(mut ordered) = ordered(observation, model, effects, &best, pause)
         else {
             return Err(Stop::Paused);
         };
+        fall(observed, model, &mut ordered, (without, tolerance), pause)?;
         let mut steps: Vec<StoryStep, MAX_STEPS> = Vec::new();
         for &(term, fall) in &ordered {
             let mut candidates: Vec<Candidate, MAX_CANDIDATES> = Vec::new();

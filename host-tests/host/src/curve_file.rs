@@ -14,7 +14,11 @@ use levels::TOLERANCE;
 pub use levels::{SpectrumLevel, SpectrumLevels};
 
 use allanite::{
-    Curve, Scale, course::CosineTransform, integrity::Reason, octave::Bridged, spectrum::Spectrum,
+    Curve, Scale,
+    course::{CosineTransform, Course},
+    integrity::Reason,
+    octave::Bridged,
+    spectrum::Spectrum,
 };
 use allanite_log::{
     self as log, BINS, OCTAVES,
@@ -31,7 +35,7 @@ pub const FORMAT: &str = "allanite-curve";
 
 /// The version of the format that is written. Versions from 1 on are read; version 1 has no spectrum, version 2 no short
 /// octaves, version 3 neither a course nor levels of the spectrum with fewer than 16 segments, version 4 no pieces, and version 5
-/// not whether the record is valid.
+/// neither the mean rate nor whether the record is valid.
 pub const VERSION: u32 = 6;
 
 /// Largest size of a curve file, in bytes. A curve takes a few kilobytes for each axis. Chosen by hand.
@@ -70,6 +74,9 @@ pub struct AxisCurve {
     /// The number of the first sample in the record that this is a part of.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub first_sample: u64,
+    /// The mean rate, in rate units, by the course. Files before version 6 have none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mean_rate: Option<f64>,
     /// Number of gaps, each of which ends a contiguous stretch of the record.
     pub gaps: u64,
     /// The gaps that were filled, and the samples that were lost in them.
@@ -99,6 +106,16 @@ pub struct AxisCurve {
     /// Why the record is not one of a gyro at rest, if it is not. Files before version 6 do not say it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub invalid: Option<Reason>,
+}
+
+/// The mean rate of a course, in rate units.
+fn mean_rate(course: &Course, scale: Scale) -> Option<f64> {
+    let blocks = course.blocks(scale).filter(|block| block.samples > 0);
+    let (sum, samples) = blocks.fold((0.0, 0.0), |(sum, samples), block| {
+        let own = f64::from(block.samples);
+        (sum + own * block.mean, samples + own)
+    });
+    (samples > 0.0).then(|| sum / samples)
 }
 
 fn is_zero(number: &u64) -> bool {
@@ -290,6 +307,7 @@ impl AxisCurve {
             rate_per_count: axis.rate_per_count,
             samples: axis.accumulator.samples(),
             first_sample: 0,
+            mean_rate: evidence.and_then(|evidence| mean_rate(evidence.course.as_ref()?, scale)),
             gaps: axis.accumulator.gaps(),
             bridged: *axis.accumulator.bridged(),
             source: None,
@@ -333,6 +351,7 @@ impl AxisCurve {
             rate_per_count,
             samples,
             first_sample: 0,
+            mean_rate: None,
             gaps: 0,
             bridged: *bridged,
             source: None,

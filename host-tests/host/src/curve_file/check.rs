@@ -19,6 +19,9 @@ impl AxisCurve {
             return Err(format!("rate_hz {} is impossible", brief(self.rate_hz)));
         }
         positive("rate_per_count", self.rate_per_count)?;
+        if let Some(mean) = self.mean_rate.filter(|mean| !mean.is_finite()) {
+            return Err(format!("mean_rate {} is impossible", brief(mean)));
+        }
         if self.samples > MOST_SAMPLES || self.first_sample > MOST_SAMPLES {
             return Err(format!("{} samples are impossible", self.samples));
         }

@@ -71,6 +71,7 @@ impl AxisCurve {
             source: joined(parts.iter().map(|part| &part.source)),
             licence: joined(parts.iter().map(|part| &part.licence)),
             invalid: parts.iter().find_map(|part| part.invalid),
+            mean_rate: mean_rate(parts),
             spectrum: spectrum(parts),
             course: match parts {
                 [only] => only.course.clone(),
@@ -123,6 +124,14 @@ impl AxisCurve {
             sum: octave.sum.checked_mul((ratio * ratio) as u128)?.into(),
         })
     }
+}
+
+/// The mean rate of all parts, if each has one.
+fn mean_rate(parts: &[AxisCurve]) -> Option<f64> {
+    let of = |part: &AxisCurve| Some((part.mean_rate? * part.samples as f64, part.samples as f64));
+    let all: Option<Vec<(f64, f64)>> = parts.iter().map(of).collect();
+    let (sums, samples): (Vec<f64>, Vec<f64>) = all?.into_iter().unzip();
+    Some(sums.iter().sum::<f64>() / samples.iter().sum::<f64>()).filter(|mean| mean.is_finite())
 }
 
 /// The curve of parts that know where they lie in one record.

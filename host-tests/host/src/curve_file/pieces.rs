@@ -65,6 +65,7 @@ impl AxisCurve {
         let without = Self {
             pieces: None,
             invalid: None,
+            mean_rate: None,
             source: None,
             licence: None,
             ..self.clone()

@@ -24,6 +24,8 @@ pub struct Axis<'a> {
     axis: &'a str,
     rate_hz: f64,
     unit: Unit,
+    /// The mean rate, which no term of the noise stands for; `None` if it is not known.
+    mean_rate: Option<f64>,
     octaves: Vec<Octave>,
     method: &'static str,
     /// The filter that was given.
@@ -119,6 +121,7 @@ fn axis(fitted: &Fitted) -> Axis<'_> {
         axis: &axis.axis,
         rate_hz: axis.rate_hz,
         unit: axis.unit,
+        mean_rate: axis.mean_rate,
         octaves: curve
             .points()
             .iter()

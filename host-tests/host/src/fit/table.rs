@@ -39,6 +39,9 @@ pub fn print(fitted: &[Fitted], output: &mut impl Write) -> io::Result<()> {
             writeln!(output, "behind {}", described(filter))?;
         }
         writeln!(output, "{}", table(&fitted.fit, axis.unit))?;
+        if let Some(mean) = axis.mean_rate {
+            writeln!(output, "mean rate {} {}", number(mean), axis.unit)?;
+        }
         let note = rounding::note(axis, &fitted.fit);
         // Whether the model explains a curve that is not valid does not matter.
         let is_coarse = rounding::is_coarse(axis);

@@ -44,6 +44,7 @@ struct Axis {
     axis: String,
     rate_hz: f64,
     unit: String,
+    mean_rate: Option<f64>,
     octaves: Vec<Octave>,
     method: String,
     coefficients: Vec<Coefficient>,

@@ -340,10 +340,20 @@ impl<'a, const K: usize, const B: usize> Diagnosis<'a, K, B> {
         let Some(story) = &self.story else {
             return Ok(());
         };
-        self.step = Step::of(&story.model(&self.model)?);
-        self.step.covariate = covariate;
-        let tolerance = Tolerance::IfNeeded(self.options.tolerance);
-        self.assess(Start::Independent, tolerance, pause)?;
+        let (model, last) = (story.model(&self.model)?, story.chi_squared());
+        let is_last = story.is_told_to_the_end();
+        let mut tolerance = Tolerance::IfNeeded(self.options.tolerance);
+        loop {
+            self.step = Step::of(&model);
+            self.step.covariate = covariate;
+            self.assess(Start::Independent, tolerance, pause)?;
+            // A model that needs a tolerance would be shown with a smaller error than the last one, which needs none.
+            let needs_more = self.step.fit.tolerance > 0.0 && self.step.fit.chi_squared < last;
+            if is_last || !needs_more {
+                break;
+            }
+            tolerance = Tolerance::Fixed(0.0);
+        }
         self.step.begin_report();
         Ok(())
     }

@@ -153,6 +153,11 @@ impl Story {
         self.chi_squared
     }
 
+    /// Whether the model of the present step has everything that was found.
+    pub(super) fn is_told_to_the_end(&self) -> bool {
+        self.told >= self.steps.len()
+    }
+
     /// The model of the present step.
     pub(super) fn model(&self, model: &Model) -> Result<Model, Error> {
         self.first(self.told, model)

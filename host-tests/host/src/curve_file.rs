@@ -74,9 +74,6 @@ pub struct AxisCurve {
     /// The number of the first sample in the record that this is a part of.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub first_sample: u64,
-    /// The mean rate, in rate units, by the course. Files before version 6 have none.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub mean_rate: Option<f64>,
     /// Number of gaps, each of which ends a contiguous stretch of the record.
     pub gaps: u64,
     /// The gaps that were filled, and the samples that were lost in them.
@@ -103,6 +100,9 @@ pub struct AxisCurve {
     /// have none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pieces: Option<Pieces>,
+    /// The mean rate, in rate units, by the course. Files before version 6 have none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mean_rate: Option<f64>,
     /// Why the record is not one of a gyro at rest, if it is not. Files before version 6 do not say it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub invalid: Option<Reason>,

@@ -158,7 +158,7 @@ fn steps_are_selected_by_mouse_and_keyboard_and_show_their_own_error() {
         "{widths:?}"
     );
     assert!(
-        widths[0] > 1.2 * widths[1] && widths[1] > 1.2 * widths[last],
+        widths[0] > 1.15 * widths[1] && widths[1] > 1.2 * widths[last],
         "{widths:?}"
     );
     assert!(browser.complaints.is_empty(), "{:?}", browser.complaints);

@@ -130,7 +130,10 @@ impl AxisCurve {
 fn mean_rate(parts: &[AxisCurve]) -> Option<f64> {
     let of = |part: &AxisCurve| Some((part.mean_rate? * part.samples as f64, part.samples as f64));
     let all: Option<Vec<(f64, f64)>> = parts.iter().map(of).collect();
-    let (sums, samples): (Vec<f64>, Vec<f64>) = all?.into_iter().unzip();
+    let mut all = all?;
+    // The order of the parts changes no bit.
+    all.sort_by(|one, other| one.0.total_cmp(&other.0));
+    let (sums, samples): (Vec<f64>, Vec<f64>) = all.into_iter().unzip();
     Some(sums.iter().sum::<f64>() / samples.iter().sum::<f64>()).filter(|mean| mean.is_finite())
 }
 

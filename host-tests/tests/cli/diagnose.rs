@@ -372,3 +372,29 @@ fn a_model_that_is_too_high_is_not_adequate_and_what_is_added_lowers_the_error()
     );
     assert_eq!(axis["verdict"], Verdict::Incomplete.name());
 }
+
+/// Gauss–Markov noise of 3 s and 0.018 deg/s behind a filter of three poles and a line of 7.1 Hz, without a random walk. The filter
+/// is found behind another one by crossing; what the white noise behind it still hides has to be looked for as well.
+#[test]
+fn slow_noise_behind_a_filter_and_a_line_is_not_taken_for_a_random_walk() {
+    let three = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../tests/fixtures/low-pass-line-gauss-markov.json"
+    );
+    let document = json(Path::new("."), &["diagnose", three]);
+    let axis = &document["axes"][0];
+    assert_eq!(
+        names(&axis["missing"]),
+        ["digital_low_pass", "sinusoid", "gauss_markov"]
+    );
+    assert_eq!(axis["verdict"], Verdict::Improved.name());
+    let (_, last) = steps(axis);
+    let time_s = number(&parameters(last, "gauss_markov").unwrap()["correlation_time_s"]);
+    assert!((2.2..4.5).contains(&time_s), "{time_s}");
+    let coefficients = last["coefficients"].as_array().unwrap();
+    let walk = coefficients
+        .iter()
+        .find(|one| one["symbol"] == "K")
+        .unwrap();
+    assert_ne!(walk["state"], "measured", "{walk}");
+}

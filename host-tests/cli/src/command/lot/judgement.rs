@@ -152,6 +152,23 @@ impl Lot {
     }
 }
 
+/// The axes whose records are not valid, a line for those of a device that have one reason.
+pub(super) fn reasons(invalid: &[Invalid]) -> Vec<String> {
+    let is_same =
+        |one: &Invalid, other: &Invalid| (&one.device, &one.words) == (&other.device, &other.words);
+    let line = |axes: &[Invalid]| {
+        let names: Vec<&str> = axes.iter().map(|one| one.axis.as_str()).collect();
+        let first = axes.first()?;
+        Some(format!(
+            "{} {}: {}",
+            first.device,
+            names.join(", "),
+            first.words
+        ))
+    };
+    invalid.chunk_by(is_same).filter_map(line).collect()
+}
+
 fn named(devices: &[Device], wanted: fn(Verdict) -> bool) -> Vec<Named> {
     let axes = devices.iter().flat_map(|device| {
         device.axes_with(wanted).map(|axis| Named {

@@ -1,6 +1,6 @@
 //! The judgement of a lot as text.
 
-use super::judgement::Lot;
+use super::judgement::{Lot, reasons};
 use allanite_host::{number::number, words::plain};
 use comfy_table::{CellAlignment, Table, presets::NOTHING};
 use std::io::{self, Write};
@@ -39,9 +39,8 @@ pub(super) fn print(lot: &Lot, output: &mut impl Write) -> io::Result<()> {
             one.unit
         )
     })?;
-    list(output, "not valid, not judged", &lot.invalid, |one| {
-        format!("{} {}: {}", one.device, one.axis, one.words)
-    })?;
+    let reasons = reasons(&lot.invalid);
+    list(output, "not valid, not judged", &reasons, String::clone)?;
     list(
         output,
         "not explained, not judged",

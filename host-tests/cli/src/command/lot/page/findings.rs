@@ -1,7 +1,7 @@
 //! The devices that a page names: those that fail, that are unlike the others, and that have drifted.
 
 use super::quantity::shown_unit;
-use crate::command::lot::judgement::Judged;
+use crate::command::lot::judgement::{Judged, reasons};
 use allanite::effect::{CATALOGUE, Effect, IEEE_952};
 use allanite_host::{number::number, words::plain};
 use maud::{Markup, html};
@@ -68,8 +68,8 @@ pub(super) fn findings(judged: &Judged<'_>) -> Markup {
             (table("fail", "Devices that fail", ["value", "95 % interval"], failures, lot.failures.len()))
             (table("outliers", "Outliers", ["value", "median"], outliers, lot.outliers.len()))
             (table("drifted", "Drifted", ["earlier → now", "change"], drifted, lot.drifted.len()))
-            (names("Not valid, not judged", lot.invalid.iter().map(|one| format!("{} {}: {}", one.device, one.axis, one.words))))
-            (names("Not explained by the effects of the catalogue, not judged",
+            (names("Not valid, not judged", "reasons", reasons(&lot.invalid).into_iter()))
+            (names("Not explained by the effects of the catalogue, not judged", "names",
                 lot.unexplained.iter().map(|one| format!("{} {}", one.device, one.axis))))
         }
     }
@@ -122,13 +122,13 @@ fn more(all: usize) -> Markup {
 }
 
 /// Axes by their names, if there are any.
-fn names(title: &str, all: impl ExactSizeIterator<Item = String>) -> Markup {
+fn names(title: &str, class: &str, all: impl ExactSizeIterator<Item = String>) -> Markup {
     let count = all.len();
     html! {
         @if count > 0 {
             section {
                 h2 { (title) }
-                ul.names {
+                ul class=(class) {
                     @for one in all.take(SHOWN) { li { (one) } }
                 }
                 (more(count))

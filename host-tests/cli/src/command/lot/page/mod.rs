@@ -150,13 +150,6 @@ fn lead(lot: &Lot) -> String {
             drifted.len()
         ));
     }
-    if !lot.invalid.is_empty() {
-        let records = count(lot.invalid.len(), "record");
-        let verb = if lot.invalid.len() == 1 { "is" } else { "are" };
-        parts.push(format!(
-            "{records} of an axis {verb} not valid and not judged."
-        ));
-    }
     parts.join(" ")
 }
 

@@ -49,7 +49,7 @@ pub struct Axis<'a> {
     missing: &'a [&'static str],
     /// The factor by which intervals and bounds are widened.
     birge_ratio: f64,
-    /// Why the curve is not valid; `null` if it is, or if the input is a curve file.
+    /// Why the curve is not valid; `null` if it is.
     pub invalid: Option<&'a str>,
     /// The same in a word.
     reason: Option<&'static str>,

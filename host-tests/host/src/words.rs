@@ -451,6 +451,12 @@ fn sign(size: f64) -> &'static str {
     if size < 0.0 { "−" } else { "+" }
 }
 
+/// χ² of a fit with its degrees of freedom.
+pub fn goodness(fit: &Fit) -> String {
+    let (chi_squared, degrees) = (fit.chi_squared, fit.degrees_of_freedom);
+    format!("{chi_squared:.1}, {degrees} degrees of freedom")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -468,10 +474,4 @@ mod tests {
             "a low pass or a sinusoid or random telegraph noise or rate random walk"
         );
     }
-}
-
-/// χ² of a fit with its degrees of freedom.
-pub fn goodness(fit: &Fit) -> String {
-    let (chi_squared, degrees) = (fit.chi_squared, fit.degrees_of_freedom);
-    format!("{chi_squared:.1}, {degrees} degrees of freedom")
 }

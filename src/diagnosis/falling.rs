@@ -1,6 +1,6 @@
 //! An order of effects in which the error of the fit falls with each.
 
-use super::story::with;
+use super::extended::with;
 use crate::{
     evidence::observed::Observed,
     fit::{Start, Tolerance, Work},

@@ -8,6 +8,7 @@ mod alternative;
 mod assessment;
 mod correction;
 mod covariate_regression;
+mod extended;
 mod falling;
 mod mirror;
 mod options;

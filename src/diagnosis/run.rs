@@ -4,10 +4,11 @@
 use super::{
     assessment::{Assessment, assess},
     covariate_regression::followed,
+    extended::with,
     options::Options,
     search::{Found, Limits, Observation, Search},
     step::{Addition, Step},
-    story::{Story, with},
+    story::Story,
     verdict::Verdict,
 };
 use crate::{

@@ -1,6 +1,7 @@
 //! The way from the first model to the one that was found: one effect a step, the largest fall of the error first.
 
 use super::{
+    extended::with,
     falling::fall,
     mirror::{Mirrored, tell_from_mirror},
     polish::polished,
@@ -209,18 +210,6 @@ impl Story {
     pub(super) fn go_on(&mut self) {
         self.told = self.told.saturating_add(1);
     }
-}
-
-/// The model with some effects. Each takes the place of the effect that it replaces, or the last place.
-pub(super) fn with(model: &Model, terms: &[Term]) -> Result<Model, Error> {
-    let mut whole = model.clone();
-    for term in terms {
-        if let Some(replaced) = term.effect.replaces() {
-            whole.remove(replaced.name());
-        }
-        whole.add(*term)?;
-    }
-    Ok(whole)
 }
 
 /// The term that another hypothesis has in the place of one of the best hypothesis; `None` if it has the same one, or none.

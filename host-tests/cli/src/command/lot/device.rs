@@ -1,11 +1,10 @@
 //! A device of a lot, as its certificate describes it.
 
-use super::limited::Rule;
 use allanite::{
     diagnosis::Verdict,
     storage::{AxisCertificate, Certificate, CertifiedTerm},
 };
-use allanite_host::lot::{Decision, Measurement};
+use allanite_host::lot::Measurement;
 use allanite_log::unit::Unit;
 use std::path::PathBuf;
 
@@ -61,20 +60,6 @@ impl Device {
         let mut terms = self.terms();
         let (_, term) = terms.find(|(other, _)| *other == place)?;
         Measurement::of(term)
-    }
-
-    /// What a limit decides of an axis.
-    pub(super) fn decision(&self, axis: usize, rule: &Rule) -> Decision {
-        let verdict = self
-            .certificate
-            .axes
-            .get(axis)
-            .and_then(|axis| axis.verdict);
-        match verdict {
-            Some(Verdict::Invalid(_)) => Decision::Invalid,
-            Some(Verdict::Unexplained | Verdict::Incomplete) => Decision::Misfit,
-            _ => rule.decision(axis, self.measurement((axis, rule.limit.effect.name()))),
-        }
     }
 
     /// The places of the axes whose verdict is one of these.

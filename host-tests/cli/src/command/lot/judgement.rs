@@ -111,7 +111,7 @@ impl Lot {
         let worst = |device: &Device| {
             let axes = 0..device.certificate.axes.len();
             let decisions =
-                axes.flat_map(|axis| rules.iter().map(move |rule| device.decision(axis, rule)));
+                axes.flat_map(|axis| rules.iter().map(move |rule| rule.decision(device, axis)));
             // A certificate without axes says nothing.
             decisions.max().unwrap_or(Decision::Guarded)
         };
@@ -205,7 +205,7 @@ fn failures(devices: &[Device], rules: &[Rule]) -> Vec<Failing> {
             let Some((rule, known)) = rule.zip(Measurement::of(term)) else {
                 continue;
             };
-            if device.decision(axis, rule) == Decision::Failed {
+            if rule.decision(device, axis) == Decision::Failed {
                 let failing = Failing {
                     device: device.id.clone(),
                     axis: decode::axis_name(axis),
@@ -227,7 +227,7 @@ fn undecided(devices: &[Device], rules: &[Rule]) -> Vec<Undecided> {
         for axis in 0..device.certificate.axes.len() {
             for rule in rules {
                 let effect = rule.limit.effect.name();
-                if device.decision(axis, rule) == Decision::Guarded {
+                if rule.decision(device, axis) == Decision::Guarded {
                     undecided.push(Undecided {
                         device: device.id.clone(),
                         axis: decode::axis_name(axis),

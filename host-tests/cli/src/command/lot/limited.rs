@@ -2,6 +2,7 @@
 
 use super::device::Device;
 use crate::command::decode;
+use allanite::diagnosis::Verdict;
 use allanite_host::{
     limit::Limit,
     lot::{Capability, Decision, ErrorModel, Measurement, Sample, acceptance_limit},
@@ -83,11 +84,19 @@ impl Rule {
         known.map(|one| one.conformity(self.limit.value, self.error(axis)))
     }
 
-    /// What is decided of a coefficient of which this is known. A certificate without the coefficient decides nothing.
-    pub(super) fn decision(&self, axis: usize, known: Option<Measurement>) -> Decision {
-        known.map_or(Decision::Guarded, |one| {
-            one.decision(self.limit.value, self.error(axis), self.risk)
-        })
+    /// What is decided of an axis of a device. A certificate without the coefficient decides nothing.
+    pub(super) fn decision(&self, device: &Device, axis: usize) -> Decision {
+        let certified = device.certificate.axes.get(axis);
+        match certified.and_then(|axis| axis.verdict) {
+            Some(Verdict::Invalid(_)) => Decision::Invalid,
+            Some(Verdict::Unexplained | Verdict::Incomplete) => Decision::Misfit,
+            _ => {
+                let known = device.measurement((axis, self.limit.effect.name()));
+                known.map_or(Decision::Guarded, |one| {
+                    one.decision(self.limit.value, self.error(axis), self.risk)
+                })
+            }
+        }
     }
 }
 
@@ -100,7 +109,7 @@ impl Limited {
             .iter()
             .filter(|device| device.certificate.axes.len() > axis);
         let of_axis: Vec<(Decision, Option<Measurement>)> = with_axis
-            .map(|device| (device.decision(axis, rule), device.measurement(place)))
+            .map(|device| (rule.decision(device, axis), device.measurement(place)))
             .collect();
         let known: Vec<Option<Measurement>> = of_axis.iter().map(|(_, known)| *known).collect();
         let decided: Vec<(Decision, f64)> = of_axis

@@ -221,7 +221,7 @@ fn measurement(row: &Row<'_>, effect: &dyn Effect) -> Option<Measurement> {
 }
 
 fn decision(row: &Row<'_>, rule: &Rule) -> Decision {
-    row.device.decision(row.axis, rule)
+    rule.decision(row.device, row.axis)
 }
 
 /// What is known of a coefficient: its value, its interval, and what its limit says.

@@ -88,7 +88,7 @@ fn quantity<'a>(judged: &Judged<'a>, rule: &Rule, axis: usize) -> Quantity<'a> {
         let earlier = judged.before.get(device.id.as_str());
         Point {
             device: &device.id,
-            decision: device.decision(axis, rule),
+            decision: rule.decision(device, axis),
             known,
             earlier: earlier.and_then(|earlier| earlier.measurement(place)),
             has_drifted: drifted.contains(&device.id.as_str()),

@@ -219,8 +219,13 @@ impl<const K: usize, const B: usize> Weights<K, B> {
     /// the numbers of differences are, and large for a model that is too high.
     #[inline(never)]
     pub(crate) fn deviance(&self, problem: &Problem<'_, K, B>, squares: &Vector) -> Real {
+        let deterministic = problem.deterministic();
         let residual = |row: usize| {
             let (error, model) = (self.relative_error(row), problem.variance(row, squares));
+            // A ramp or a line is no variance with degrees of freedom.
+            if problem.share_of(&deterministic, row, squares) > 0.5 {
+                return problem.measured(row) - model;
+            }
             let ratio = single(problem.measured(row) / model);
             // Residuals are in standard errors, which are relative to the model of the weights.
             real(deviance_residual(ratio, single(error))) * error * self.model[row]

@@ -23,6 +23,9 @@ const WHITE_BITS: u32 = 22;
 /// Products of whitened columns lose these bits, so that no sum of thirty overflows.
 const PRODUCT_BITS: u32 = 8;
 
+/// Half of a model, as a share of it.
+const HALF: u16 = 1 << 14;
+
 /// The octaves of a curve, and the factor of their covariance.
 pub(super) struct Rows<'a, const K: usize> {
     pub(super) rows: &'a mut [Row],
@@ -178,6 +181,11 @@ impl<'a, const K: usize> Rows<'a, K> {
                 Column::Measured => row.measured - held.1 * units.variance(held.0, octave),
                 Column::Residual(squares) => row.measured - units.model(squares, octave),
                 Column::Deviance(squares) => {
+                    // A ramp is no variance with degrees of freedom.
+                    let [.., ramp] = row.shares;
+                    if ramp > HALF {
+                        return (row.measured - units.model(squares, octave)) * row.weight;
+                    }
                     let ratio = row.measured / units.model(squares, octave);
                     return deviance_residual(ratio, 1.0 / row.certainty);
                 }

@@ -387,7 +387,6 @@ fn a_gyro_that_follows_its_temperature_and_has_a_line_says_both_after_reading_ba
     );
     let found: Vec<_> = axis.found().map(|term| term.effect.name()).collect();
     assert_eq!(found, ["sinusoid"]);
-    eprintln!("DBG {:?} {} {} {:?}", axis.chi_squared, axis.degrees_of_freedom, axis.p_value, axis.terms);
     assert_eq!(axis.verdict, Some(Verdict::Improved));
 
     for (what, spoil) in FINDINGS {

@@ -9,7 +9,7 @@ use statrs::distribution::{ContinuousCDF as _, Normal};
 pub enum Decision {
     /// The probability that the coefficient is above the limit is at most the risk.
     Passed,
-    /// The record is too short to tell.
+    /// The record is too short to tell, or the coefficient is not observable.
     Guarded,
     /// No model explains the record, so that no interval says anything about a limit.
     Misfit,
@@ -43,10 +43,12 @@ impl Measurement {
     /// largest probability that the decision is wrong.
     pub fn decision(&self, limit: f64, error: f64, risk: f64) -> Decision {
         let conformity = self.conformity(limit, error);
-        // What cannot exceed the whole curve keeps a limit above it, although the record does not show it.
+        if !self.is_observable {
+            return Decision::Guarded;
+        }
         if 1.0 - conformity <= risk {
             Decision::Passed
-        } else if self.is_observable && conformity <= risk {
+        } else if conformity <= risk {
             Decision::Failed
         } else {
             Decision::Guarded

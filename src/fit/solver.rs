@@ -10,6 +10,7 @@ use crate::{
     error::Error,
     list::numbered,
     numerics::{
+        chi_squared::chi_squared_tail,
         deviance::judged,
         nnls::{NormalEquations, PassiveSet, Vector},
         real::Real,
@@ -213,10 +214,7 @@ impl<const K: usize, const B: usize> Solver<K, B> {
         let is_last = change.amax() < CONVERGED
             || match self.rounds {
                 Rounds::One => true,
-                Rounds::Promising if self.round == 1 => {
-                    self.judge(problem);
-                    self.p_value() < HOPELESS_P
-                }
+                Rounds::Promising if self.round == 1 => self.is_hopeless(problem),
                 _ => self.round >= ROUNDS,
             };
         if is_last {
@@ -225,6 +223,15 @@ impl<const K: usize, const B: usize> Solver<K, B> {
         }
         self.begin_next(problem, change)?;
         Ok(false)
+    }
+
+    /// Whether no further round can make the model plausible. This asks χ² alone: the deviance of a solution with the weights of
+    /// another model is large where a term is about to vanish.
+    fn is_hopeless(&self, problem: &Problem<'_, K, B>) -> bool {
+        let (weights, squares) = (&self.weights, &self.squares);
+        let residuals = weights.squared_residuals(problem, squares);
+        let chi_squared = weights.chi_squared(problem, squares, residuals);
+        chi_squared_tail(chi_squared, self.degrees_of_freedom) < HOPELESS_P
     }
 
     /// Sets χ² of the solution, and what follows from it.

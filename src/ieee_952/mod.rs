@@ -130,14 +130,15 @@ pub(crate) fn fit_curve<const K: usize>(curve: &Curve<K>) -> Result<Fit, Error> 
         let free = tableau.free().count_ones() as usize;
         points.len().saturating_sub(free)
     };
+    let mut deviance = rows.deviance(&squares);
     let mut tolerance = 0.0;
-    if estimate::birge_ratio(chi_squared, degrees(&tableau)) > 1.0 {
+    if estimate::judged(chi_squared, deviance, degrees(&tableau)).1 > 1.0 {
         tolerance = real(TOLERANCE);
         rows.tolerance = TOLERANCE * TOLERANCE;
         chi_squared = solve(&mut rows, &mut tableau, &mut squares).ok_or(Error::Singular)?;
+        deviance = rows.deviance(&squares);
     }
     let degrees_of_freedom = degrees(&tableau);
-    let deviance = rows.deviance(&squares);
     let (chi_squared, birge_ratio) = estimate::judged(chi_squared, deviance, degrees_of_freedom);
     let scale = estimate::Scale::new(reference, curve.interval_s(), rows.units);
     Ok(Fit {

@@ -36,7 +36,7 @@ pub(crate) fn judged(chi_squared: Real, deviance: Real, degrees_of_freedom: usiz
 pub(crate) fn p_value(judged: Real, deviance: Real, degrees_of_freedom: usize) -> Real {
     let tail = chi_squared_tail(judged, degrees_of_freedom);
     if judged.to_bits() == deviance.to_bits() {
-        DOUBT * tail
+        (DOUBT * tail).min(1.0)
     } else {
         tail
     }

@@ -120,9 +120,8 @@ def test_covariates(tmp_path):
     rows = np.column_stack(list(columns.values()))
     np.savetxt(path, rows, delimiter=",", header="gx,temp_C", comments="", fmt="%.17g")
     assert diagnosis.to_dict() == document("diagnose", path, "--rate", 100, "--unit", "deg/s")
-    # The model that effects are added to is what is left when the covariate is subtracted. One of the two may be granted a
-    # tolerance of 1 %, and the other not.
-    assert diagnosis.model.chi2 == pytest.approx(diagnosis.steps[-1].chi2, rel=0.2)
+    # The model that effects are added to is what is left when the covariate is subtracted.
+    assert diagnosis.model.chi2 == pytest.approx(diagnosis.steps[-1].chi2, rel=1e-2)
     without = allanite.Record.from_numpy(columns, rate=100, unit="deg/s", covariates=False)
     assert without["gx"].covariates == ()
 

@@ -291,6 +291,24 @@ where
     }
 }
 
+impl<const OCTAVES: usize, const AXES: usize> Axes<OCTAVES, 0, (), (), AXES, (), Courses> {
+    /// Adds counts of every axis, as many as the shortest slice has. The state afterwards is the same as if they were pushed one
+    /// by one, but it is reached sooner.
+    pub fn push_slices(&mut self, counts: [&[i32]; AXES]) {
+        let length = counts.iter().map(|counts| counts.len()).min().unwrap_or(0);
+        let counts = counts.map(|counts| counts.get(..length).unwrap_or(counts));
+        for place in 0..length {
+            let sample = counts.map(|counts| counts.get(place).copied().unwrap_or(0));
+            self.kept.reads.push(sample);
+        }
+        for (axis, counts) in self.kept.axes.iter_mut().zip(counts) {
+            axis.integrity.push_slice(counts);
+            axis.course.push_slice(counts);
+            axis.accumulator.push_slice(counts);
+        }
+    }
+}
+
 impl<const OCTAVES: usize, const COVARIATES: usize, G, M, const AXES: usize, S, T> Default
     for Axes<OCTAVES, COVARIATES, G, M, AXES, S, T>
 where
@@ -301,5 +319,37 @@ where
 {
     fn default() -> Self {
         Self::new()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn slices_of_any_length_make_the_same_record() {
+        let mut random = 1_u32;
+        let columns = [(); 3].map(|()| {
+            let mut noise = || {
+                random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                (random >> 26) as i32
+            };
+            core::array::from_fn::<i32, 3000, _>(|_| noise())
+        });
+        let mut singly = Axes::<12, 0, (), (), 3, (), Courses>::new();
+        for place in 0..3000 {
+            singly.push(columns.map(|column| column[place]));
+        }
+        for length in [1, 7, 64, 3000] {
+            let mut sliced = Axes::new();
+            for from in (0..3000).step_by(length) {
+                let until = 3000.min(from + length);
+                // What one axis has more than another is not taken.
+                let [x, y, z] = columns.each_ref().map(|column| &column[from..until]);
+                let longer = &columns[1][from..3000.min(until + 5)];
+                sliced.push_slices([x, if length == 7 { longer } else { y }, z]);
+            }
+            assert_eq!(sliced, singly, "{length}");
+        }
     }
 }

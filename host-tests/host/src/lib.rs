@@ -17,6 +17,7 @@ pub mod interface;
 pub mod judgement;
 pub mod known_filter;
 pub mod limit;
+pub mod live;
 pub mod lot;
 pub mod model_json;
 pub mod number;

@@ -1,8 +1,7 @@
 //! Tests `watch`: whatever ends a live record, the curve contains what was received.
 
-use allanite::{Accumulator, course::Course};
-use allanite_host::curve_file::CurveFile;
-use allanite_log::{Axis, Evidence, OCTAVES, SpectrumSums, unit::Unit};
+use allanite_host::{curve_file::CurveFile, live::Live, record::with_evidence};
+use allanite_log::{Log, unit::Unit};
 use program::{command, piped, refusal, rows, signal};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -93,49 +92,27 @@ fn saved(folder: &Path) -> CurveFile {
 /// The curves of the first lines that contain the given number of samples. They must agree to the
 /// bit.
 fn expected(sent: &[Sent], samples: u64, gaps: u64) -> CurveFile {
-    let mut accumulators = [(); 2].map(|()| Accumulator::<OCTAVES>::new());
-    let mut spectra = [(); 2].map(|()| SpectrumSums::new());
-    let mut courses = [(); 2].map(|()| Course::<0>::new());
+    let mut axes = Live::new(AXES.len());
     let mut rest = sent.iter();
-    while accumulators[0].samples() < samples {
+    while axes.samples() < samples {
         match rest.next().expect("no more samples than were sent") {
-            Sent::Sample(counts) => {
-                for (i, &count) in counts.iter().enumerate() {
-                    accumulators[i].push(count);
-                    spectra[i].push_slice(&[count]);
-                    courses[i].push(count, []);
-                }
-            }
-            Sent::Garbled => {
-                accumulators.iter_mut().for_each(Accumulator::gap);
-                spectra.iter_mut().for_each(SpectrumSums::gap);
-                courses.iter_mut().for_each(Course::gap);
-            }
+            Sent::Sample(counts) => axes.push(&counts.each_ref().map(std::slice::from_ref)),
+            Sent::Garbled => axes.gap(),
         }
     }
-    if accumulators[0].gaps() < gaps {
+    if axes.gaps() < gaps {
         assert!(matches!(rest.next(), Some(Sent::Garbled)));
-        accumulators.iter_mut().for_each(Accumulator::gap);
-        spectra.iter_mut().for_each(SpectrumSums::gap);
+        axes.gap();
     }
-    let sums = accumulators.into_iter().zip(spectra).zip(courses);
-    let axes = AXES
-        .iter()
-        .zip(sums)
-        .map(|(name, ((accumulator, spectrum), course))| {
-            let axis = Axis {
-                spectrum,
-                name: (*name).to_owned(),
-                rate_per_count: 0.01,
-                accumulator,
-                evidence: Some(Evidence {
-                    course: Some(course),
-                    ..Evidence::default()
-                }),
-            };
-            allanite_host::curve_file::AxisCurve::of(&axis, 100.0, Unit::DegreesPerSecond).unwrap()
-        });
-    CurveFile::new(axes.collect())
+    let curves = with_evidence(&Log {
+        rate_hz: 100.0,
+        unit: Unit::DegreesPerSecond,
+        has_scale: true,
+        axes: axes.axes(&AXES.map(String::from), 0.01),
+        notes: Vec::new(),
+    });
+    let curves = curves.unwrap().into_iter();
+    CurveFile::new(curves.map(|(curve, _)| curve).collect())
 }
 
 /// Asserts that the saved curve is that of a prefix of what was sent, and returns the number of

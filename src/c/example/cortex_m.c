@@ -1,4 +1,4 @@
-/* What the product needs on a Cortex-M in QEMU: a vector table, start-up code, and semihosting to print and to leave. */
+/* What the product needs on a Cortex-M in QEMU: a vector table, start-up code, and semihosting to print, to read and to leave. */
 
 #include <stddef.h>
 #include <stdint.h>
@@ -17,6 +17,23 @@ static uintptr_t semihost(uintptr_t operation, uintptr_t argument) {
 
 void print(const char *text) {
     semihost(0x04, (uintptr_t)text);
+}
+
+size_t take(void *to, size_t bytes) {
+    /* SYS_OPEN of ":tt" to be read is the standard input, and SYS_READ returns how many bytes are left. */
+    static const char name[] = ":tt";
+    static uintptr_t input;
+    size_t taken = 0, more;
+    if (input == 0) {
+        const uintptr_t file[3] = {(uintptr_t)name, 0, sizeof name - 1};
+        input = semihost(0x01, (uintptr_t)file);
+    }
+    do {
+        const uintptr_t place[3] = {input, (uintptr_t)to + taken, bytes - taken};
+        more = bytes - taken - semihost(0x06, (uintptr_t)place);
+        taken += more;
+    } while (more > 0 && taken < bytes);
+    return taken;
 }
 
 void leave(int status) {

@@ -9,6 +9,10 @@ void print(const char *text) {
     fputs(text, stdout);
 }
 
+size_t take(void *to, size_t bytes) {
+    return fread(to, 1, bytes, stdin);
+}
+
 void leave(int status) {
     exit(status);
 }

@@ -5,7 +5,7 @@
 
 use allanite::{
     Axes, Model, Real, Scale,
-    axis::{AxisRecord, Gated, Moments, Spectral},
+    axis::{AxisRecord, Courses, Gated, Moments, Spectral},
     diagnosis::{Diagnosis, Options, Progress, Verdict},
     effect::CATALOGUE,
     fit::{self, Fit, State, fit},
@@ -20,7 +20,7 @@ const SAMPLES: u32 = 65_536;
 const SNAPSHOT: u32 = 40_000;
 const POWER_LOSS: u32 = 41_000;
 
-type Gyro = Axes<OCTAVES, 1, Gated, Moments, 3, Spectral<64, 7, 140>>;
+type Gyro = Axes<OCTAVES, 1, Gated, Moments, 3, Spectral<64, 7, 140>, Courses>;
 type Record = AxisRecord<OCTAVES, 1, Spectrum<140>>;
 
 /// White noise, an oscillation, and a temperature that the first axis follows.

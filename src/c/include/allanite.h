@@ -113,13 +113,13 @@
 #endif
 
 // Words of an `AllaniteGyro`.
-#define ALLANITE_GYRO_WORDS (2322 + (66 * ALLANITE_OCTAVES))
+#define ALLANITE_GYRO_WORDS (3274 + (66 * ALLANITE_OCTAVES))
 
 // Words of an `AllaniteAxis`.
 #define ALLANITE_AXIS_WORDS (23 + (12 * ALLANITE_OCTAVES))
 
 // Words of an `AllaniteRecord`.
-#define ALLANITE_RECORD_WORDS (470 + (7 * ALLANITE_OCTAVES))
+#define ALLANITE_RECORD_WORDS (472 + (7 * ALLANITE_OCTAVES))
 
 // Words of an `AllaniteSelfTest`.
 #define ALLANITE_SELF_TEST_WORDS 36
@@ -134,7 +134,7 @@
 #define ALLANITE_CERTIFICATE_WORDS 560
 
 // Bytes of a buffer for any snapshot of a record and a self-test.
-#define ALLANITE_SNAPSHOT_BYTES (8800 + (310 * ALLANITE_OCTAVES))
+#define ALLANITE_SNAPSHOT_BYTES (20300 + (307 * ALLANITE_OCTAVES))
 
 // Bytes of a buffer for any certificate.
 #define ALLANITE_CERTIFICATE_BYTES 3700

@@ -6,7 +6,7 @@ use crate::{
     diagnosis::AllaniteDiagnosis,
     fit::AllaniteRecord,
     gyro::{AllaniteGyro, Gyro},
-    memory::Memory,
+    memory::{Marked, Memory},
     self_test::{AllaniteLook, AllaniteSelfTest},
     sizes::{
         ALLANITE_AXIS_WORDS, ALLANITE_CERTIFICATE_BYTES, ALLANITE_CERTIFICATE_WORDS,
@@ -18,7 +18,7 @@ use allanite::{Real, storage::Certificate};
 
 /// The words that a value takes, the mark before it included.
 const fn words<M: Memory>() -> usize {
-    1 + size_of::<M::Value>().div_ceil(8)
+    size_of::<Marked<M::Value>>().div_ceil(8)
 }
 
 /// Whether a limit suffices for what is needed, and is at most a tenth larger.

@@ -7,15 +7,15 @@ use crate::{
 };
 use allanite::{
     Axes,
-    axis::{Gated, Moments, Spectral},
+    axis::{Courses, Gated, Moments, Spectral},
 };
 
 /// The bins of a spectrum of five levels.
 pub(crate) const BINS: usize = 140;
 
-/// The record: a gate, fourth moments, a temperature and spectra.
+/// The record: a gate, fourth moments, a temperature, spectra and courses.
 pub(crate) type Gyro =
-    Axes<ALLANITE_OCTAVES, 1, Gated, Moments, ALLANITE_AXES, Spectral<64, 7, BINS>>;
+    Axes<ALLANITE_OCTAVES, 1, Gated, Moments, ALLANITE_AXES, Spectral<64, 7, BINS>, Courses>;
 
 /// The record of a gyro. It may be copied and moved while no function works on it.
 #[repr(C)]

@@ -16,7 +16,7 @@ pub(crate) unsafe trait Memory: Sized {
 
 /// What the memory holds.
 #[repr(C, align(8))]
-struct Marked<V> {
+pub(crate) struct Marked<V> {
     mark: u64,
     value: V,
 }

@@ -34,9 +34,7 @@ impl Accumulator {
         }
         py.detach(|| {
             let mut recording = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-            for (axis, counts) in slices.into_iter().enumerate() {
-                recording.push(axis, counts);
-            }
+            recording.push(&slices);
         });
         Ok(())
     }

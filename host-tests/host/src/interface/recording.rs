@@ -1,9 +1,9 @@
 //! A record that grows while samples arrive.
 
 use super::{options::Sensor, record::Record};
-use allanite::{Accumulator, course::Course, integrity::Integrity};
+use crate::live::Live;
 use allanite_log::{
-    Axis, Evidence, Log, OCTAVES, SpectrumSums,
+    Log,
     failure::{Failure, Place},
     unit::Unit,
 };
@@ -15,16 +15,8 @@ pub struct Recording {
     rate_hz: f64,
     rate_per_count: f64,
     unit: Unit,
-    axes: Vec<Live>,
-}
-
-#[derive(Clone)]
-struct Live {
-    name: String,
-    accumulator: Accumulator<OCTAVES>,
-    spectrum: SpectrumSums,
-    course: Course,
-    integrity: Integrity,
+    names: Vec<String>,
+    axes: Live,
 }
 
 impl Recording {
@@ -54,24 +46,18 @@ impl Recording {
                 "give each axis a name of its own",
             ));
         }
-        let axes = axes.into_iter().map(|name| Live {
-            name,
-            accumulator: Accumulator::new(),
-            spectrum: SpectrumSums::new(),
-            course: Course::new(),
-            integrity: Integrity::new(),
-        });
         Ok(Self {
             rate_hz: rate,
             rate_per_count: scale,
             unit,
-            axes: axes.collect(),
+            axes: Live::new(axes.len()),
+            names: axes,
         })
     }
 
     /// The number of axes.
-    pub fn axes(&self) -> usize {
-        self.axes.len()
+    pub const fn axes(&self) -> usize {
+        self.axes.width()
     }
 
     /// The rate of a count.
@@ -81,29 +67,17 @@ impl Recording {
 
     /// Samples of each axis so far.
     pub fn samples(&self) -> u64 {
-        self.axes
-            .first()
-            .map_or(0, |axis| axis.accumulator.samples())
+        self.axes.samples()
     }
 
-    /// Adds counts of an axis. All axes have to get equally many before anything else is done.
-    pub fn push(&mut self, axis: usize, counts: &[i32]) {
-        if let Some(axis) = self.axes.get_mut(axis) {
-            axis.accumulator.push_slice(counts);
-            axis.spectrum.push_slice(counts);
-            axis.course.push_slice(counts);
-            axis.integrity.push_slice(counts);
-        }
+    /// Adds counts of every axis, all of one length.
+    pub fn push(&mut self, columns: &[&[i32]]) {
+        self.axes.push(columns);
     }
 
     /// Tells that samples are missing here, an unknown number of them.
     pub fn gap(&mut self) {
-        for axis in &mut self.axes {
-            axis.accumulator.gap();
-            axis.spectrum.gap();
-            axis.course.gap();
-            axis.integrity.gap();
-        }
+        self.axes.gap();
     }
 
     /// The record so far.
@@ -117,22 +91,11 @@ impl Recording {
             let what = format!("{} samples are too few", self.samples());
             return Err(Place::file(path).failure(what, format!("push at least {LEAST}")));
         }
-        let axes = self.axes.iter().map(|axis| Axis {
-            name: axis.name.clone(),
-            rate_per_count: self.rate_per_count,
-            accumulator: axis.accumulator.clone(),
-            spectrum: axis.spectrum.clone(),
-            evidence: Some(Evidence {
-                course: Some(axis.course.clone()),
-                invalid: axis.integrity.verdict(),
-                ..Evidence::default()
-            }),
-        });
         let log = Log {
             rate_hz: self.rate_hz,
             unit: self.unit,
             has_scale: true,
-            axes: axes.collect(),
+            axes: self.axes.axes(&self.names, self.rate_per_count),
             notes: Vec::new(),
         };
         Record::of_log(path, log)

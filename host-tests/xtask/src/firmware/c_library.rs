@@ -189,6 +189,14 @@ pub fn replay(corpus: &Path) -> Result<Vec<String>> {
 /// # Errors
 /// Fails if it cannot be built, or if it ends with a failure.
 pub fn host_program(sources: &[&str], into: &Path) -> Result<Vec<String>> {
+    lines(&mut Command::new(build_for_host(sources, into)?))
+}
+
+/// Compiles a program of the example's folder for this host, with checks of memory and of undefined behaviour.
+///
+/// # Errors
+/// Fails if it cannot be built.
+pub fn build_for_host(sources: &[&str], into: &Path) -> Result<PathBuf> {
     let library = host_library()?;
     let program = into.join("program");
     let mut gcc = Command::new("gcc");
@@ -205,7 +213,7 @@ pub fn host_program(sources: &[&str], into: &Path) -> Result<Vec<String>> {
         .args(["-lm", "-lpthread", "-ldl", "-o"])
         .arg(&program);
     succeed(&mut gcc)?;
-    lines(&mut Command::new(&program))
+    Ok(program)
 }
 
 /// The options by which GCC compiles for a Cortex-M4F, and for a Cortex-M0+.
@@ -266,13 +274,17 @@ pub fn build_for_target(
 pub fn target_program(core: &Core, source: &str, into: &Path) -> Result<Vec<String>> {
     let program = build_for_target(core, Contents::ALL, source, into)?;
     let _heartbeat = Heartbeat::new(format!("the product in C on {core} in QEMU"));
-    lines(
-        Command::new(core.qemu)
-            .args(["-machine", core.machine, "-cpu", core.cpu])
-            .args(["-nographic", "-monitor", "none", "-serial", "null"])
-            .args(["-semihosting-config", "enable=on,target=native", "-kernel"])
-            .arg(&program),
-    )
+    lines(&mut in_emulator(core, &program))
+}
+
+/// The command that runs a program for a core in QEMU.
+pub fn in_emulator(core: &Core, program: &Path) -> Command {
+    let mut qemu = Command::new(core.qemu);
+    qemu.args(["-machine", core.machine, "-cpu", core.cpu])
+        .args(["-nographic", "-monitor", "none", "-serial", "null"])
+        .args(["-semihosting-config", "enable=on,target=native", "-kernel"])
+        .arg(program);
+    qemu
 }
 
 fn succeed(command: &mut Command) -> Result<()> {
@@ -286,7 +298,11 @@ fn succeed(command: &mut Command) -> Result<()> {
     Ok(())
 }
 
-fn lines(command: &mut Command) -> Result<Vec<String>> {
+/// The lines that a program prints.
+///
+/// # Errors
+/// Fails if it ends with a failure.
+pub fn lines(command: &mut Command) -> Result<Vec<String>> {
     let line = shown(command);
     let output = command.output();
     let output = output.with_context(|| format!("`{line}` did not start: {REMEDY}"))?;

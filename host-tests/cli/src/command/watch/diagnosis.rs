@@ -30,10 +30,10 @@ pub(super) struct Found {
 
 impl Found {
     /// Diagnoses an axis. `None` if it cannot be fitted.
-    pub(super) fn of(axis: AxisCurve) -> Option<Self> {
+    pub(super) fn of((axis, evidence): (AxisCurve, Evidence)) -> Option<Self> {
         let (name, samples) = (axis.axis.clone(), axis.samples);
         let model = Model::ieee_952();
-        let diagnosed = Diagnosed::new(axis, Evidence::default(), &model, None).ok()?;
+        let diagnosed = Diagnosed::new(axis, evidence, &model, None).ok()?;
         let (_, last) = diagnosed.ends()?;
         let octaves = last.comparison.octaves.iter();
         Some(Self {
@@ -73,7 +73,7 @@ impl Diagnoser {
     }
 
     /// Takes the results of a diagnosis that has ended, and begins another one if it is time to.
-    pub(super) fn advance(&mut self, curves: impl FnOnce() -> Option<Vec<AxisCurve>>) {
+    pub(super) fn advance(&mut self, curves: impl FnOnce() -> Option<Vec<(AxisCurve, Evidence)>>) {
         if let Some(running) = self.running.take_if(|running| running.is_finished()) {
             // A thread that panicked has no results; the earlier ones stay.
             self.found = running.join().unwrap_or(std::mem::take(&mut self.found));

@@ -181,7 +181,10 @@ impl Shared {
     fn save(&self) -> Result<(), Failure> {
         let curves = locked(&self.recording).curves()?;
         match curves {
-            Some(curves) => locked(&self.saving).save(curves),
+            Some(curves) => {
+                let curves = curves.into_iter().map(|(curve, _)| curve).collect();
+                locked(&self.saving).save(curves)
+            }
             None => Ok(()),
         }
     }

@@ -1,14 +1,10 @@
 //! A recording: splits the input into lines and pushes their counts into the accumulators.
 
-use allanite::{Axis as Record, course::Course};
-use allanite_host::curve_file::AxisCurve;
-use allanite_log::{Axis, Evidence, OCTAVES, SpectrumSums, failure::Failure, unit::Unit};
+use allanite_host::{curve_file::AxisCurve, live::Live, record::with_evidence};
+use allanite_log::{Evidence, Log, failure::Failure, unit::Unit};
 
 /// A longer line, in bytes, is invalid. Chosen by hand.
 const LONGEST_LINE: usize = 4096;
-
-/// An axis without a gate, so that every sample that is sent is shown.
-type Gyro = Record<OCTAVES, 0, (), ()>;
 
 /// The samples recorded so far, as accumulators, and the line that is being received.
 pub(super) struct Recording {
@@ -18,11 +14,7 @@ pub(super) struct Recording {
     unit: Unit,
     names: Option<Vec<String>>,
     /// The axes; their number is known from the first sample on.
-    axes: Vec<Gyro>,
-    /// The spectrum of each axis.
-    spectra: Vec<SpectrumSums>,
-    /// The course of each axis.
-    courses: Vec<Course>,
+    axes: Live,
     /// The bytes received of the next line.
     line: Vec<u8>,
     counts: Vec<i32>,
@@ -42,8 +34,8 @@ pub(super) struct Snapshot {
     pub(super) samples: u64,
     pub(super) gaps: u64,
     pub(super) garbled: u64,
-    /// The curves, of which there are none while the record is too short.
-    pub(super) curves: Vec<AxisCurve>,
+    /// The curves with what else is known, of which there are none while the record is too short.
+    pub(super) curves: Vec<(AxisCurve, Evidence)>,
 }
 
 /// What the numbers of a line are.
@@ -100,9 +92,7 @@ impl Recording {
             numbers,
             unit,
             names,
-            axes: Vec::new(),
-            spectra: Vec::new(),
-            courses: Vec::new(),
+            axes: Live::new(0),
             line: Vec::new(),
             counts: Vec::new(),
             garbled: 0,
@@ -157,7 +147,7 @@ impl Recording {
             let is_rate = |field: &[u8]| field.is_empty() || count(field, Some(1.0)).is_some();
             self.with_decimals += u64::from(fields.all(is_rate));
         }
-        let number = self.names.as_ref().map_or(self.axes.len(), Vec::len);
+        let number = self.names.as_ref().map_or(self.axes.width(), Vec::len);
         let is_row = read && !self.counts.is_empty() && self.counts.len() <= MOST_AXES;
         if number > 0 {
             self.take_row(is_row && self.counts.len() == number);
@@ -177,23 +167,14 @@ impl Recording {
     fn take_row(&mut self, is_valid: bool) {
         if !is_valid {
             self.garbled += 1;
-            self.axes.iter_mut().for_each(Gyro::gap);
-            self.spectra.iter_mut().for_each(SpectrumSums::gap);
-            self.courses.iter_mut().for_each(Course::gap);
+            self.axes.gap();
             return;
         }
-        if self.axes.is_empty() {
-            self.axes = vec![Gyro::new(); self.counts.len()];
-            self.spectra = vec![SpectrumSums::new(); self.counts.len()];
-            self.courses = vec![Course::new(); self.counts.len()];
+        if self.axes.width() == 0 {
+            self.axes = Live::new(self.counts.len());
         }
-        let sums = self.spectra.iter_mut().zip(&mut self.courses);
-        let axes = self.axes.iter_mut().zip(sums);
-        for ((axis, (spectrum, course)), &count) in axes.zip(&self.counts) {
-            axis.push(count);
-            spectrum.push_slice(&[count]);
-            course.push(count, []);
-        }
+        let row: Vec<&[i32]> = self.counts.iter().map(std::slice::from_ref).collect();
+        self.axes.push(&row);
     }
 
     /// Takes the first lines. Those that have as many numbers as most of them are rows.
@@ -226,15 +207,12 @@ impl Recording {
 
     /// Number of samples of each axis so far.
     pub(super) fn samples(&self) -> u64 {
-        self.axes.first().map_or(0, Gyro::samples)
+        self.axes.samples()
     }
 
     /// Number of gaps so far.
     pub(super) fn gaps(&self) -> u64 {
-        self.axes.first().map_or(0, |axis| {
-            let [accumulator] = axis.accumulators();
-            accumulator.gaps()
-        })
+        self.axes.gaps()
     }
 
     /// Number of invalid lines so far.
@@ -263,30 +241,23 @@ impl Recording {
         }
     }
 
-    /// The curves of the samples so far, or `None` while there are fewer than two octaves.
-    pub(super) fn curves(&self) -> Result<Option<Vec<AxisCurve>>, Failure> {
-        let of_axis = |(i, axis): (usize, &Gyro)| {
-            let [accumulator] = axis.accumulators();
-            let axis = Axis {
-                spectrum: self.spectra[i].clone(),
-                name: self.name(i),
-                rate_per_count: self.rate_per_count,
-                accumulator: accumulator.clone(),
-                evidence: Some(Evidence {
-                    course: Some(self.courses[i].clone()),
-                    ..Evidence::default()
-                }),
-            };
-            AxisCurve::of(&axis, self.rate_hz, self.unit)
-        };
-        let curves = self.axes.iter().enumerate().map(of_axis);
-        let curves = curves.collect::<Result<Vec<_>, _>>()?;
-        let long = !curves.is_empty() && curves.iter().all(|curve| curve.octaves.len() >= 2);
+    /// The curves of the samples so far, with what else they show, or `None` while there are fewer than two octaves.
+    pub(super) fn curves(&self) -> Result<Option<Vec<(AxisCurve, Evidence)>>, Failure> {
+        let names: Vec<String> = (0..self.axes.width()).map(|i| self.name(i)).collect();
+        let curves = with_evidence(&Log {
+            rate_hz: self.rate_hz,
+            unit: self.unit,
+            has_scale: true,
+            axes: self.axes.axes(&names, self.rate_per_count),
+            notes: Vec::new(),
+        })?;
+        let is_long = |(curve, _): &(AxisCurve, Evidence)| curve.octaves.len() >= 2;
+        let long = !curves.is_empty() && curves.iter().all(is_long);
         Ok(long.then_some(curves))
     }
 
     fn name(&self, i: usize) -> String {
-        match (&self.names, self.axes.len()) {
+        match (&self.names, self.axes.width()) {
             (Some(names), _) => names[i].clone(),
             (None, 1) => "gyro".into(),
             (None, 2 | 3) => ["x", "y", "z"][i].into(),
@@ -309,6 +280,8 @@ fn count(field: &[u8], rate_per_count: Option<f64>) -> Option<i32> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use allanite::Accumulator;
+    use allanite_log::OCTAVES;
 
     fn recording() -> Recording {
         recording_of(Numbers::Counts, 1.0)
@@ -316,6 +289,13 @@ mod tests {
 
     fn recording_of(numbers: Numbers, rate_per_count: f64) -> Recording {
         Recording::new(100.0, rate_per_count, numbers, Unit::DegreesPerSecond, None).unwrap()
+    }
+
+    /// What is kept of each axis.
+    fn sums(recording: &Recording) -> Vec<Accumulator<OCTAVES>> {
+        let names = ["x", "y"].map(String::from);
+        let axes = recording.axes.axes(&names, 1.0).into_iter();
+        axes.map(|axis| axis.accumulator).collect()
     }
 
     #[test]
@@ -335,7 +315,7 @@ mod tests {
             rates.take(line.as_bytes());
             counts.take(b"none\n");
         }
-        assert!(rates.axes == counts.axes);
+        assert!(sums(&rates) == sums(&counts));
         assert_eq!((rates.samples(), rates.garbled()), (300, 4));
         assert_eq!(counts.remedy(), None);
         unread.end();
@@ -367,7 +347,7 @@ mod tests {
             text.as_bytes()
                 .chunks(piece)
                 .for_each(|piece| pieces.take(piece));
-            assert!(pieces.axes == whole.axes, "pieces of {piece}");
+            assert!(sums(&pieces) == sums(&whole), "pieces of {piece}");
         }
     }
 

@@ -20,7 +20,7 @@ use crate::command::{
     input::record,
     output::{file::OutputFile, progress},
 };
-use allanite_host::fit;
+use allanite_host::{curve_file::AxisCurve, fit};
 use allanite_log::failure::{Failure, Place, plural, report};
 use console::Term;
 use std::{
@@ -224,9 +224,14 @@ impl Watch<'_> {
             .into_iter()
             .filter_map(|axis| axis.fitted)
             .collect();
-        let found: Vec<Found> = fitted
-            .iter()
-            .filter_map(|fitted| Found::of(fitted.axis.clone()))
+        let is_fitted =
+            |axis: &AxisCurve| fitted.iter().any(|fitted| fitted.axis.axis == axis.axis);
+        let found: Vec<Found> = recording
+            .curves()?
+            .into_iter()
+            .flatten()
+            .filter(|(axis, _)| is_fitted(axis))
+            .filter_map(Found::of)
             .collect();
         fit::table::print(&fitted, output)
             .and_then(|()| writeln!(output))

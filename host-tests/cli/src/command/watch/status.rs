@@ -44,16 +44,19 @@ pub(super) struct AxisStatus {
     pub(super) found: Option<Found>,
 }
 
+/// The method by which the axes are fitted.
+const METHOD: MethodName = MethodName::Covariance;
+
 impl Status {
     /// Fits the samples that every axis has so far. What is missing is what the last diagnosis found.
     pub(super) fn of(recorded: Snapshot, diagnoser: &Diagnoser, saving: String) -> Self {
         let model = Model::ieee_952();
-        let axes = recorded.curves.into_iter().map(|curve| {
+        let axes = recorded.curves.into_iter().map(|(curve, evidence)| {
             let name = curve.axis.clone();
             let is_constant = curve.octaves.iter().all(|octave| octave.sum == 0);
             // An axis that cannot be fitted yet may be fitted later.
             let (fitted, why) =
-                match Fitted::new(Path::new(""), curve, &model, MethodName::Covariance) {
+                match Fitted::with_evidence(Path::new(""), curve, &model, METHOD, evidence) {
                     Ok(fitted) => (Some(fitted), None),
                     Err(_) if is_constant => (None, Some("its values never change".into())),
                     Err(_) => (None, Some("the fit failed".into())),

@@ -25,7 +25,6 @@ use crate::{
             gate::{Gate, Passing as _},
             moments::MomentSums as _,
         },
-        course::Course,
         integrity::{Integrity, Reason, exceeds},
     },
     spectrum::Spectrum,
@@ -152,24 +151,8 @@ where
                 .and_then(|course| course.cosine_transform(scale)),
             kurtosis: moments.map(|moments| moments.kurtosis(&sums.accumulator)),
             covariates,
-            invalid: self.invalid(axis, &sums.integrity, sums.course.course(), scale),
+            invalid: self.verdict(axis).or_else(|| self.motion(scale)),
         })
-    }
-
-    /// Why the curve of an axis is not valid, by all that is kept. A change of the noise of this axis explains what only others show.
-    fn invalid(
-        &self,
-        axis: usize,
-        integrity: &Integrity,
-        course: Option<&Course<COVARIATES>>,
-        scale: Scale,
-    ) -> Option<Reason> {
-        let known = self.verdict(axis);
-        let is_of_others =
-            matches!(known, Some(Reason::Moved { .. })) && integrity.verdict().is_none();
-        let own = known.filter(|_| !is_of_others);
-        let changed = course.map_or(own, |course| course.or_changed(own));
-        changed.or(known).or_else(|| self.motion(scale))
     }
 
     /// Motion that never stopped, which the curves of all axes show together.
@@ -182,9 +165,9 @@ where
 
     /// The reason why the curve of an axis is not valid; `None` if it is valid.
     ///
-    /// The verdict is that of [`Integrity`] on the record that is kept. A
-    /// [record](Self::record) also shows [motion](crate::motion) that never stopped, for which its scale is needed, and a change of
-    /// the noise, if its [course](Courses) is kept. Motion in one axis makes all axes
+    /// The verdict is that of [`Integrity`] on the record that is kept, of what a reader [made](crate::faults::Reads) of the
+    /// samples, and of a change of the noise, if its [course](Courses) is kept. A [record](Self::record) also shows
+    /// [motion](crate::motion) that never stopped, for which its scale is needed. Motion in one axis makes all axes
     /// invalid, because a gyro that turns about one axis is not at rest about the others. A record is also
     /// invalid if the gate left out a larger share of its samples than
     /// [`left_out_per_mille`](crate::integrity::Limits::left_out_per_mille) allows, which is one in four by default.
@@ -206,7 +189,16 @@ where
         let reads = self.kept.reads.verdict();
         let unanswered = reads.filter(|reason| matches!(reason, Reason::Unanswered { .. }));
         let first = unanswered.or_else(|| own.and_then(verdict)).or(others);
-        first.or(reads).or(left_out)
+        let known = first.or(reads).or(left_out);
+        // A change of the noise of this axis explains what only others show.
+        let is_of_others = known.as_ref().is_some_and(moved)
+            && own.is_some_and(|integrity| integrity.verdict().is_none());
+        let own = known.filter(|_| !is_of_others);
+        let sums = self.kept.axes.get(axis);
+        let course = sums.and_then(|sums| sums.course.course());
+        course
+            .map_or(own, |course| course.or_changed(own))
+            .or(known)
     }
 
     fn left_out_too_much(&self, gate: &Gate<AXES, COVARIATES>) -> Option<Reason> {

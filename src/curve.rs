@@ -296,6 +296,13 @@ fn power_of_four(points: &[Point]) -> Real {
 }
 
 impl<const K: usize> Accumulator<K> {
+    /// The mean rate, in rate units: the bias of a gyro at rest, with the part of the earth's rate that it sees. `None` without
+    /// samples, for 2³² samples and more, and for a record from a snapshot that does not hold it.
+    pub fn mean_rate(&self, scale: Scale) -> Option<Real> {
+        let (total, values) = self.summed()?;
+        Some(total as Real / real(values) * scale.rate_per_count())
+    }
+
     /// The Allan curve so far, of the octaves with at least [`Curve::MIN_DIFFERENCES`] differences.
     pub fn curve(&self, scale: Scale) -> Curve<K> {
         self.curve_of(scale, Curve::<K>::MIN_DIFFERENCES)

@@ -42,6 +42,8 @@ pub struct AxisRecord<const OCTAVES: usize, const COVARIATES: usize = 0, D = Spe
     pub scale: Scale,
     /// The Allan curve.
     pub curve: Curve<OCTAVES>,
+    /// The [mean rate](Accumulator::mean_rate), in rate units.
+    pub mean_rate: Option<Real>,
     /// The power spectral densities; without bins if no spectrum is kept.
     pub spectrum: D,
     /// The cosine transform of the course; `None` if no course is kept, or if it is too short.
@@ -144,6 +146,7 @@ where
             samples: sums.accumulator.samples(),
             scale,
             curve: sums.accumulator.curve(scale),
+            mean_rate: sums.accumulator.mean_rate(scale),
             spectrum: S::spectrum(&sums.spectrum, &sums.accumulator, scale),
             course: sums
                 .course

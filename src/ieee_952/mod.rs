@@ -55,9 +55,13 @@ use crate::{
     curve::Curve,
     error::Error,
     evidence::record::Record,
-    fit::{ADEQUATE_P, coefficient::Coefficient},
+    fit::{
+        ADEQUATE_P,
+        coefficient::{Coefficient, State},
+    },
     numerics::{
         deviance::p_value,
+        math::short_sqrt,
         real::{Real, real},
     },
 };
@@ -89,6 +93,29 @@ pub struct Fit {
 }
 
 impl Fit {
+    /// The Allan deviation at an averaging time in seconds, in rate units: that of quantization and angle random walk, and of the
+    /// other terms if they are [measured](State::Measured).
+    pub fn deviation(&self, tau_s: Real) -> Real {
+        let shown = |found: &Coefficient| match found.state {
+            State::Measured => found.value,
+            _ => 0.0,
+        };
+        let [quantization, white, flicker, walk, ramp] = &self.coefficients;
+        let (q, n) = (quantization.value, white.value);
+        let [b, k, r] = [flicker, walk, ramp].map(shown);
+        let root = short_sqrt(tau_s);
+        // Each is squared after its share of the time is taken, so that the squares stay within the range of numbers.
+        let parts = [
+            (3.0, q / tau_s),
+            (1.0, n / root),
+            (real(terms::FLICKER), b),
+            (1.0 / 3.0, k * root),
+            (0.5, r * tau_s),
+        ];
+        let variance = parts.iter().map(|(factor, part)| factor * part * part);
+        short_sqrt(variance.sum())
+    }
+
     /// The probability of a larger χ² or deviance if the five terms explain the curve, as that of the
     /// [general fit](crate::fit::Fit::p_value); NaN without degrees of freedom.
     pub fn p_value(&self) -> Real {

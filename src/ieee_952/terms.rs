@@ -12,7 +12,7 @@ pub(super) const WHITE: usize = 1;
 pub(super) const WALK: usize = 3;
 
 /// The variance of flicker noise of unit density: `2 ln 2 / π`.
-const FLICKER: f32 = 2.0 * core::f32::consts::LN_2 / core::f32::consts::PI;
+pub(super) const FLICKER: f32 = 2.0 * core::f32::consts::LN_2 / core::f32::consts::PI;
 
 /// The octave from which on the white part of the random walk is below `2^-24` of it.
 const NO_LEAK: u32 = 13;

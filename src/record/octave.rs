@@ -22,6 +22,18 @@ const FIRST: usize = 2;
 /// The value from which `number` goes on when it is exhausted.
 const LAP: u32 = 1 << 31;
 
+/// The sum of the counts of a record of which it is not known.
+pub(crate) const UNKNOWN: i64 = i64::MIN;
+
+/// The sum of two sums, which is not known if one of them is not.
+const fn added(one: i64, other: i64) -> i64 {
+    if one == UNKNOWN || other == UNKNOWN {
+        UNKNOWN
+    } else {
+        one.wrapping_add(other)
+    }
+}
+
 /// Watches the differences that an accumulator completes.
 pub(crate) trait Observer {
     /// A difference of octave `octave` is complete.
@@ -132,6 +144,8 @@ pub struct Accumulator<const OCTAVES: usize> {
     differences: [u64; OCTAVES],
     /// The number of samples in the segments before the last gap.
     earlier_samples: u64,
+    /// The sum of the counts and of the filled values in the segments before the last gap, or [`UNKNOWN`].
+    earlier_angle: i64,
     gaps: u64,
     /// The number of filled values since the last gap.
     filled: u32,
@@ -178,6 +192,7 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
             levels: [Level::EMPTY; OCTAVES],
             differences: [0; OCTAVES],
             earlier_samples: 0,
+            earlier_angle: 0,
             gaps: 0,
             filled: 0,
             rest: 0,
@@ -305,6 +320,7 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
             *self.sum_mut(k) = octave.sum;
             self.set_counted(k, octave.differences);
         }
+        self.earlier_angle = self.total();
         self.earlier_samples = self.samples();
         self.number = 0;
         self.laps = 0;
@@ -330,6 +346,7 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
             let counted = self.counted(k).saturating_add(octave.differences);
             self.set_counted(k, counted);
         }
+        self.earlier_angle = added(self.earlier_angle, other.total());
         self.earlier_samples = self.earlier_samples.saturating_add(other.samples());
         self.bridged.merge(&other.bridged);
         let ends = other.gaps.saturating_add(u64::from(other.number > 0));
@@ -345,6 +362,25 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
     pub const fn samples(&self) -> u64 {
         let running = self.position().saturating_sub(self.filled as u64);
         self.earlier_samples.saturating_add(running)
+    }
+
+    /// Sets the sum of all counts and filled values of a record that was rebuilt.
+    #[cfg(feature = "storage")]
+    pub(crate) const fn set_total(&mut self, total: i64) {
+        self.earlier_angle = total;
+    }
+
+    /// The sum of all counts and filled values, or [`UNKNOWN`].
+    pub(crate) const fn total(&self) -> i64 {
+        added(self.earlier_angle, self.angle as i64)
+    }
+
+    /// The sum and the number of all counts and filled values; `None` without samples, for 2³² samples and more, whose sum may
+    /// exceed 64 bits, and for a record from a snapshot that does not hold it.
+    pub(crate) fn summed(&self) -> Option<(i64, u32)> {
+        let values = self.samples().saturating_add(self.bridged.lost());
+        let values = u32::try_from(values).ok().filter(|&values| values > 0)?;
+        Some((self.total(), values)).filter(|&(total, _)| total != UNKNOWN)
     }
 
     /// The number of samples and filled values since the last gap.
@@ -367,7 +403,7 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
     /// The state after a gap, rebuilt from what was read of it.
     #[cfg(feature = "storage")]
     pub(crate) fn ended(
-        samples: u64,
+        (samples, total): (u64, i64),
         gaps: u64,
         octaves: impl IntoIterator<Item = OctaveSum>,
     ) -> Self {
@@ -377,6 +413,7 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
             accumulator.set_counted(k, octave.differences);
         }
         accumulator.earlier_samples = samples;
+        accumulator.earlier_angle = total;
         accumulator.gaps = gaps;
         accumulator
     }

@@ -13,6 +13,9 @@ use heapless::Vec;
 /// What distinguishes a look from those of other tests: where its test lay when the look began, and which of its looks it is.
 pub(super) type Mark = (usize, u32);
 
+/// The curve, the mean rate if it is known, and why the curve is not valid.
+pub(super) type Observed<const OCTAVES: usize> = (Curve<OCTAVES>, Option<Real>, Option<Reason>);
+
 /// A look in progress, for a main loop that has other work to do: the first call of [`advance`](Self::advance) takes as long
 /// as a [fit of the five terms](crate::ieee_952::fit()), and each other one compares it with a limit that is not decided yet,
 /// which takes no longer. Samples may be pushed meanwhile; the look is at the record as it was when the look began.
@@ -56,6 +59,8 @@ pub struct Look<const OCTAVES: usize> {
     pub(super) samples: u64,
     /// Why its curve is not valid.
     pub(super) invalid: Option<Reason>,
+    /// The mean rate, in rate units, if it is known.
+    pub(super) mean_rate: Option<Real>,
     /// `None` where it cannot be fitted.
     curve: Option<Curve<OCTAVES>>,
     /// The fit, once it is known.
@@ -92,13 +97,14 @@ impl<const OCTAVES: usize> Look<OCTAVES> {
     pub(super) fn new(
         mark: Mark,
         samples: u64,
-        (curve, invalid): (Curve<OCTAVES>, Option<Reason>),
+        (curve, mean_rate, invalid): Observed<OCTAVES>,
         limits: impl Iterator<Item = Compared>,
     ) -> Self {
         Self {
             mark: Some(mark),
             samples,
             invalid,
+            mean_rate,
             curve: invalid.is_none().then_some(curve),
             fit: None,
             limits: list::fill(limits),

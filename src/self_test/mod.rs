@@ -10,16 +10,14 @@ mod stored;
 pub(crate) use stored::LONGEST;
 
 pub use look::Look;
-pub use plan::{InvalidPlan, Limit, Plan};
+pub use plan::{BIAS, InvalidPlan, Limit, Plan};
 
 use crate::{
-    curve::{Curve, Scale},
+    curve::Scale,
     error::Error,
     evidence::axis::AxisRecord,
-    fit::{
-        ADEQUATE_P,
-        coefficient::{Coefficient, State},
-    },
+    fit::{ADEQUATE_P, coefficient::State},
+    ieee_952::Fit,
     list::numbered,
     numerics::{
         algebra::Choice,
@@ -27,7 +25,7 @@ use crate::{
     },
     record::{integrity::Reason, octave::Accumulator},
 };
-use look::{Compared, Mark};
+use look::{Compared, Mark, Observed};
 use quantile::quantile;
 
 /// Below this p-value of all looks together the five terms do not explain a curve at the last look, whatever the plan
@@ -62,11 +60,43 @@ pub enum Status {
     Invalid(Reason),
 }
 
+/// What a look shows of a limit.
+struct Measured {
+    value: Real,
+    /// How far it lies above the limit, in standard errors.
+    above: Real,
+    state: State,
+}
+
+/// What a look at a record of so many seconds shows of a limit; `None` if it cannot be compared.
+fn measured<const OCTAVES: usize>(
+    look: &Look<OCTAVES>,
+    fit: &Fit,
+    limit: &Limit,
+    seconds: Real,
+) -> Option<Measured> {
+    if limit.effect == BIAS {
+        let value = look.mean_rate?.abs();
+        return Some(Measured {
+            value,
+            above: (value - limit.most) / fit.deviation(seconds),
+            state: State::Measured,
+        });
+    }
+    let compared = look.compared(limit)?;
+    let coefficient = fit.coefficients.get(compared.place)?;
+    Some(Measured {
+        value: coefficient.value,
+        above: compared.above?,
+        state: coefficient.state,
+    })
+}
+
 /// The requirement that a gyro did not meet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Failure {
-    /// A coefficient is above its limit, and the five terms explain the curve: its p-value is
+    /// The bias is above its limit; or a coefficient is, and the five terms explain the curve: its p-value is
     /// [`ADEQUATE_P`] or more.
     Limit {
         /// The limit that the coefficient exceeds.
@@ -94,7 +124,8 @@ pub enum Failure {
 /// the others free, also those that the first fit held at zero. The covariance of the curve is taken at
 /// that fit, because the question is how far chance may carry the curve of a gyro that is at its limit.
 /// The signed root of the difference in χ² between this fit and the best one is compared with the
-/// quantile of the normal distribution.
+/// quantile of the normal distribution. The standard error of a mean rate, for a limit of the [bias](BIAS), is the Allan
+/// deviation that the fit gives for the length of the record.
 ///
 /// Each look is a chance of an error. Therefore the probabilities of the plan are divided evenly among the
 /// looks (Bonferroni 1936), and that of a false fail also among the limits. That of a false pass is not,
@@ -239,7 +270,8 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
         if unit != test {
             return Err(Error::OtherScale { record: unit, test });
         }
-        Ok(self.begin(record.samples, record.curve.clone(), record.invalid))
+        let observed = (record.curve.clone(), record.mean_rate, record.invalid);
+        Ok(self.begin(record.samples, observed))
     }
 
     /// Begins a look at an accumulator of counts, whose rate and unit are those of the test: for a sensor that has no room for
@@ -252,21 +284,18 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
         accumulator: &Accumulator<OCTAVES>,
         invalid: Option<Reason>,
     ) -> Look<OCTAVES> {
-        self.begin(
-            accumulator.samples(),
-            accumulator.curve(self.scale),
+        let scale = self.scale;
+        let observed = (
+            accumulator.curve(scale),
+            accumulator.mean_rate(scale),
             invalid,
-        )
+        );
+        self.begin(accumulator.samples(), observed)
     }
 
     // Apart, so that no copy of the curve lies on the stack while a look is taken up.
     #[inline(never)]
-    fn begin(
-        &mut self,
-        samples: u64,
-        curve: Curve<OCTAVES>,
-        invalid: Option<Reason>,
-    ) -> Look<OCTAVES> {
+    fn begin(&mut self, samples: u64, observed: Observed<OCTAVES>) -> Look<OCTAVES> {
         // No two tests that have begun a look lie at one place. A test may move afterwards.
         self.begun = self.begun.wrapping_add(1);
         let mark = (core::ptr::from_ref(self).addr(), self.begun);
@@ -274,7 +303,7 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
         let limits = numbered(self.plan.limits.iter());
         let undecided = limits.filter(|&(i, _)| !self.progress.kept.has(i));
         let compared = undecided.filter_map(|(_, limit)| Compared::new(limit));
-        Look::new(mark, samples, (curve, invalid), compared)
+        Look::new(mark, samples, observed, compared)
     }
 
     /// Takes up a look, and says how the test stands. What the look still lacks is done at once, so that a look that was
@@ -395,19 +424,25 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
             if self.progress.kept.has(i) {
                 continue;
             }
-            let compared = look.compared(limit);
-            let known = compared.and_then(|compared| {
-                let coefficient = fit.coefficients.get(compared.place)?;
-                Some((coefficient, compared.above?))
-            });
-            let Some((coefficient, above)) = known else {
+            let Some(Measured {
+                value,
+                above,
+                state,
+            }) = measured(look, fit, limit, seconds)
+            else {
                 open = Some((i, Real::INFINITY));
                 continue;
             };
             // The fit must lie on the same side, so that no value within the limit fails.
-            if above < -self.pass && coefficient.value < limit.most {
+            if above < -self.pass && value < limit.most {
                 self.progress.kept.add(i);
-            } else if above > self.fail && coefficient.value > limit.most {
+            } else if above > self.fail && limit.effect == BIAS {
+                // The mean of a record at rest is what it is, whatever effect its curve lacks.
+                return Status::Failed(Failure::Limit {
+                    limit: *limit,
+                    value,
+                });
+            } else if above > self.fail && value > limit.most {
                 // An effect that the five terms lack, such as a vibration, must not be blamed on one of them. The
                 // gyro fails either way, so that the usual threshold of an adequate fit adds no false fail.
                 return Status::Failed(if p_value < ADEQUATE_P {
@@ -415,11 +450,11 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
                 } else {
                     Failure::Limit {
                         limit: *limit,
-                        value: coefficient.value,
+                        value,
                     }
                 });
             } else {
-                let needed = self.needed_s(coefficient, above, seconds);
+                let needed = self.needed_s(state, above, seconds);
                 if open.is_none_or(|(_, longest)| needed > longest) {
                     open = Some((i, needed));
                 }
@@ -439,8 +474,8 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
 
     /// The length in seconds of a record that would decide, if the estimate is right. Standard errors fall
     /// with the square root of the length.
-    fn needed_s(&self, coefficient: &Coefficient, standard_errors: Real, seconds: Real) -> Real {
-        if let State::NotObservable { after_s } = coefficient.state {
+    fn needed_s(&self, state: State, standard_errors: Real, seconds: Real) -> Real {
+        if let State::NotObservable { after_s } = state {
             return after_s.unwrap_or(Real::INFINITY);
         }
         let enough = if standard_errors < 0.0 {

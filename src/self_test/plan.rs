@@ -9,13 +9,17 @@ use crate::{
 };
 use heapless::Vec;
 
-/// The largest value that a coefficient may have.
+/// The name of the limit of the mean rate.
+pub const BIAS: &str = "bias";
+
+/// The largest value that a coefficient or the mean rate may have.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Limit {
-    /// The name of one of the five IEEE-952 terms, such as `angle_random_walk`.
+    /// The name of one of the five IEEE-952 terms, such as `angle_random_walk`, or [`BIAS`].
     pub effect: &'static str,
-    /// The largest value, in the coefficient's unit: rate unit · s^(half_seconds/2).
+    /// The largest value, in the coefficient's unit: rate unit · s^(half_seconds/2). That of the bias is the largest mean rate,
+    /// of either sign, in rate units; the rate of the earth is a part of what is measured.
     pub most: Real,
 }
 
@@ -23,8 +27,8 @@ pub struct Limit {
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Plan {
-    /// The limits of coefficients, at most one for each coefficient.
-    pub limits: Vec<Limit, TERMS>,
+    /// The limits of coefficients and of the bias, at most one for each.
+    pub limits: Vec<Limit, { TERMS + 1 }>,
     /// The smallest p-value of the five-term fit, 0 ≤ `least_p` < 1. It is divided among the looks, and a
     /// gyro with a smaller p-value fails. 0 requires nothing: a gyro with a vibration passes as long as no coefficient
     /// that stands for it is above its limit.
@@ -47,7 +51,7 @@ pub struct Plan {
 pub enum InvalidPlan {
     /// The plan has neither a limit nor a smallest p-value.
     NothingAsked,
-    /// A limit names something other than one of the five terms.
+    /// A limit names something other than one of the five terms or the bias.
     UnknownEffect(&'static str),
     /// Two limits name the same coefficient.
     TwoLimits(&'static str),
@@ -75,7 +79,7 @@ impl Plan {
             return Err(InvalidPlan::NothingAsked);
         }
         for (i, limit) in self.limits.iter().enumerate() {
-            if ieee_952::place(limit.effect).is_none() {
+            if limit.effect != BIAS && ieee_952::place(limit.effect).is_none() {
                 return Err(InvalidPlan::UnknownEffect(limit.effect));
             }
             let mut others = self.limits.iter().take(i);
@@ -126,7 +130,7 @@ impl core::fmt::Display for InvalidPlan {
             Self::UnknownEffect(name) => write!(
                 f,
                 "a limit of {name} cannot be tested: name one of the five IEEE-952 terms, such as \
-                 angle_random_walk"
+                 angle_random_walk, or bias"
             ),
             Self::TwoLimits(name) => write!(f, "{name} has two limits: keep the lower one"),
             Self::InvalidLimit(Limit { effect, most }) => {

@@ -8,7 +8,7 @@
 //! | content | type |
 //! |---|---|
 //! | number of octaves, axes, covariates, self-tests | 4 × u8 |
-//! | parts: 1 for a gate, plus 2 for fourth moments, plus 4 for the course, plus 8 for the reads | u8 |
+//! | parts: 1 for a gate, plus 2 for fourth moments, plus 4 for the course, plus 8 for the reads, plus 16 for the sums | u8 |
 //! | spectrum: number of blocks of a segment, number of levels; zeros without one | u16, u8 |
 //! | samples; gaps, including one at the end of the snapshot | 2 × u64 |
 //! | for each octave `m = 1, 2, 4, …`: number of differences, the same for all axes and covariates | u64 |
@@ -22,6 +22,7 @@
 //! | and for each bin, if there are segments: Σ P and Σ P² over the segments | 2 × f32 |
 //! | and with the course: its blocks, as `course::stored` says | |
 //! | with reads, which earlier snapshots lack: the structure `reads::stored::Stored` | |
+//! | with sums, which earlier snapshots lack: the sum of all counts and filled values of each axis, then of each covariate; −2^63 if it is not known | i64 |
 //! | losses | u64 |
 //! | with a gate: samples left out, then for each axis the integrity of all samples | u64, … |
 //! | for each self-test: plan, next look, limits kept, verdict | |
@@ -39,7 +40,7 @@ use crate::{
         },
         course::Course,
         cross_sums::ProductSum,
-        octave::{Accumulator, Bridged, OctaveSum},
+        octave::{Accumulator, Bridged, OctaveSum, UNKNOWN},
         reads::Reads,
         square_sum::SquareSum,
     },
@@ -54,6 +55,9 @@ const BRIDGED_VERSION: u8 = 5;
 
 /// The bit of the parts that says that the reads follow.
 const WITH_READS: u8 = 8;
+
+/// The bit of the parts that says that the sums of the counts follow.
+const WITH_SUMS: u8 = 16;
 
 /// The largest number of bytes that the integrity of an axis takes.
 const INTEGRITY: usize = 520;
@@ -113,7 +117,8 @@ where
         let axis = sums + INTEGRITY + moments + products + seen + spectrum + course;
         let head =
             Reads::<AXES>::LONGEST_STORED + 5 + 4 + (4 + OCTAVES) * LONGEST + LONGEST_BRIDGED;
-        head + AXES * axis + COVARIATES * sums + self_tests * self_test::LONGEST + OVERHEAD
+        let counts = (AXES + COVARIATES) * LONGEST;
+        head + counts + AXES * axis + COVARIATES * sums + self_tests * self_test::LONGEST + OVERHEAD
     }
 
     fn parts(self_tests: usize) -> Parts {
@@ -125,7 +130,8 @@ where
             kept: u8::from(Self::HAS_GATE)
                 + 2 * u8::from(Self::HAS_MOMENTS)
                 + 4 * u8::from(Self::HAS_COURSE)
-                + WITH_READS,
+                + WITH_READS
+                + WITH_SUMS,
         }
     }
 
@@ -193,6 +199,9 @@ where
             }
         }
         writer.push(&self.kept.reads.stored())?;
+        for accumulator in self.kept.accumulators() {
+            writer.push(&accumulator.total())?;
+        }
         writer.push(&self.losses)?;
         if let Some(gate) = self.gate.gate() {
             writer.push(&gate.left_out())?;
@@ -207,10 +216,7 @@ where
     }
 
     fn write_sums(&self, writer: &mut Writer<'_>) -> Result<(), Error> {
-        let accumulators = || {
-            let axes = self.kept.axes.iter().map(|axis| &axis.accumulator);
-            axes.chain(&self.kept.covariates)
-        };
+        let accumulators = || self.kept.accumulators();
         let Some(first) = accumulators().next() else {
             return Ok(());
         };
@@ -262,6 +268,9 @@ where
             snapshot::VERSION | snapshot::BRIDGED_VERSION => {
                 return self.read_accumulator(self_tests, bytes);
             }
+            found if snapshot::EARLIER.contains(&found) => {
+                return self.read_accumulator(self_tests, bytes);
+            }
             found => {
                 return Err(Error::UnknownVersion {
                     found,
@@ -277,8 +286,8 @@ where
                 wanted: OCTAVES,
             });
         }
-        let has_reads = parts.kept & WITH_READS > 0;
-        parts.kept |= WITH_READS;
+        let [has_reads, has_sums] = [WITH_READS, WITH_SUMS].map(|bit| parts.kept & bit > 0);
+        parts.kept |= WITH_READS | WITH_SUMS;
         if parts != Self::parts(self_tests.len()) {
             return Err(Error::OtherParts);
         }
@@ -307,6 +316,11 @@ where
         if has_reads {
             let rest = self.kept.reads.restore(reader.0);
             reader.0 = rest.ok_or(Error::Impossible)?;
+        }
+        if has_sums {
+            for accumulator in self.kept.accumulators_mut() {
+                accumulator.set_total(reader.take()?);
+            }
         }
         self.losses = reader.take()?;
         if let Some(gate) = self.gate.gate_mut() {
@@ -340,8 +354,7 @@ where
             true => take_bridged(&mut reader.0).ok_or(Error::Impossible)?,
             false => Bridged::NONE,
         };
-        let axes = self.kept.axes.iter_mut().map(|axis| &mut axis.accumulator);
-        for accumulator in axes.chain(&mut self.kept.covariates) {
+        for accumulator in self.kept.accumulators_mut() {
             for (octave, k) in octaves.iter_mut().zip(0..) {
                 let sum = SquareSum::from_limbs(reader.take()?);
                 octave.sum = sum.ok_or(Error::Impossible)?;
@@ -349,7 +362,8 @@ where
                     return Err(Error::Impossible);
                 }
             }
-            *accumulator = Accumulator::ended(samples, gaps, octaves).with_bridged(bridged);
+            *accumulator =
+                Accumulator::ended((samples, UNKNOWN), gaps, octaves).with_bridged(bridged);
         }
         Ok(())
     }

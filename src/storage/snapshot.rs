@@ -1,8 +1,9 @@
 //! Snapshots of an accumulator alone: its sums, as bytes that survive a restart.
 //!
-//! This table describes version 1 of the payload of the [`envelope`]. The payload is
+//! This table describes version 7 of the payload of the [`envelope`]. The payload is
 //! in postcard's encoding: numbers longer than one byte are varints of seven bits per byte, lowest bits
-//! first. A record with gaps that were filled has version 6. [`Axes`](crate::Axes) writes [other versions](super::axes).
+//! first, and signed numbers are zigzag-encoded. A record with gaps that were filled has version 8. Versions 1 and 6, which lack
+//! the sum of the counts, are read as well. [`Axes`](crate::Axes) writes [other versions](super::axes).
 //!
 //! | content | type |
 //! |---|---|
@@ -11,12 +12,13 @@
 //! | gaps, including one at the end of the snapshot | u64 |
 //! | for each octave, `m = 1, 2, 4, …`: number of differences | u64 |
 //! | for each octave, after its number of differences: Σ D² in counts², lowest limb first | 3 × u64 |
-//! | in version 6: gaps that were filled and samples lost in them, of each class of [`Bridged`] | 7 × u32, 7 × u32 |
+//! | in version 8: gaps that were filled and samples lost in them, of each class of [`Bridged`] | 7 × u32, 7 × u32 |
+//! | the sum of all counts and filled values; −2^63 if it is not known | i64 |
 
 use super::envelope::{self, Kind, OVERHEAD, Writer, take as take_part};
 use crate::{
     record::{
-        octave::{Accumulator, Bridged, CLASSES, OctaveSum},
+        octave::{Accumulator, Bridged, CLASSES, OctaveSum, UNKNOWN},
         square_sum::SquareSum,
     },
     storage::Error,
@@ -24,10 +26,13 @@ use crate::{
 use serde::{Deserialize, Serialize};
 
 /// The version of the format for an accumulator alone.
-pub(crate) const VERSION: u8 = 1;
+pub(crate) const VERSION: u8 = 7;
 
 /// The version of the format for an accumulator of a record with gaps that were filled.
-pub(crate) const BRIDGED_VERSION: u8 = 6;
+pub(crate) const BRIDGED_VERSION: u8 = 8;
+
+/// Earlier versions, without and with gaps that were filled. They lack the sum of the counts.
+pub(crate) const EARLIER: [u8; 2] = [1, 6];
 
 /// The number of bytes of the longest varint of 64 bits.
 pub(crate) const LONGEST: usize = 10;
@@ -47,7 +52,7 @@ struct Octave {
 
 /// The largest number of bytes of a payload with this many octaves.
 const fn longest(octaves: usize) -> usize {
-    1 + 2 * LONGEST + octaves * 4 * LONGEST + LONGEST_BRIDGED
+    1 + 3 * LONGEST + octaves * 4 * LONGEST + LONGEST_BRIDGED
 }
 
 /// The largest number of bytes of the gaps that were filled.
@@ -62,6 +67,7 @@ pub struct Snapshot<'b> {
     gaps: u64,
     sums: &'b [u8],
     bridged: Bridged,
+    total: i64,
 }
 
 impl<'b> Snapshot<'b> {
@@ -72,7 +78,9 @@ impl<'b> Snapshot<'b> {
     /// [`Error::UnknownVersion`]; [`Error::Impossible`] if no record of that many samples has such sums.
     pub fn open(bytes: &'b [u8]) -> Result<Self, Error> {
         let (version, payload) = envelope::open_any(bytes, Kind::Snapshot)?;
-        if ![VERSION, BRIDGED_VERSION].contains(&version) {
+        let is_bridged = [BRIDGED_VERSION, EARLIER[1]].contains(&version);
+        let is_summed = !EARLIER.contains(&version);
+        if !is_bridged && ![VERSION, EARLIER[0]].contains(&version) {
             return Err(Error::UnknownVersion {
                 found: version,
                 known: VERSION,
@@ -86,6 +94,7 @@ impl<'b> Snapshot<'b> {
             gaps: head.gaps,
             sums,
             bridged: Bridged::NONE,
+            total: UNKNOWN,
         };
         let possible = has_possible_gaps(head.samples, head.gaps);
         if !(2..=30).contains(&snapshot.octaves) || !possible {
@@ -95,8 +104,11 @@ impl<'b> Snapshot<'b> {
         for k in 0..usize::from(snapshot.octaves) {
             (_, rest) = take(k, rest).ok_or(Error::Impossible)?;
         }
-        if version == BRIDGED_VERSION {
+        if is_bridged {
             snapshot.bridged = take_bridged(&mut rest).ok_or(Error::Impossible)?;
+        }
+        if is_summed {
+            snapshot.total = take_part(&mut rest).ok_or(Error::Impossible)?;
         }
         let is_possible = |(k, octave): (usize, OctaveSum)| {
             is_possible((head.samples, head.gaps), &snapshot.bridged, k, &octave)
@@ -189,8 +201,8 @@ fn take(k: usize, bytes: &[u8]) -> Option<(OctaveSum, &[u8])> {
 }
 
 impl<const OCTAVES: usize> Accumulator<OCTAVES> {
-    /// The size in bytes of a buffer that holds a snapshot of any record: 903 for 20 octaves. Four million
-    /// samples of a gyro at rest take 248 of these.
+    /// The size in bytes of a buffer that holds a snapshot of any record: 913 for 20 octaves. Four million
+    /// samples of a gyro at rest take 252 of these.
     pub const SNAPSHOT_BYTES: usize = longest(OCTAVES) + OVERHEAD;
 
     /// Writes the sums to a buffer and returns the part of it that was used. The accumulator does not change.
@@ -234,6 +246,7 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
         if version == BRIDGED_VERSION {
             writer.push(self.bridged())?;
         }
+        writer.push(&self.total())?;
         writer.finish()
     }
 
@@ -251,7 +264,7 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
                 wanted: OCTAVES,
             });
         }
-        let (samples, gaps) = (snapshot.samples, snapshot.gaps);
-        Ok(Self::ended(samples, gaps, snapshot.octaves()).with_bridged(snapshot.bridged))
+        let sums = (snapshot.samples, snapshot.total);
+        Ok(Self::ended(sums, snapshot.gaps, snapshot.octaves()).with_bridged(snapshot.bridged))
     }
 }

@@ -13,6 +13,7 @@ pub use course::CourseDensities;
 use levels::TOLERANCE;
 pub use levels::{SpectrumLevel, SpectrumLevels};
 
+use crate::rounding;
 use allanite::{
     Curve, Scale,
     course::{CosineTransform, Course},
@@ -37,6 +38,9 @@ pub const FORMAT: &str = "allanite-curve";
 /// octaves, version 3 neither a course nor levels of the spectrum with fewer than 16 segments, version 4 no pieces, and version 5
 /// neither the mean rate nor whether the record is valid.
 pub const VERSION: u32 = 6;
+
+/// The first version that says whether a record is valid. Of earlier ones, the octaves show whether the noise is too small.
+const JUDGED_VERSION: u32 = 6;
 
 /// Largest size of a curve file, in bytes. A curve takes a few kilobytes for each axis. Chosen by hand.
 const LARGEST: u64 = 1 << 24;
@@ -221,8 +225,12 @@ impl CurveFile {
             ));
         }
         let mut file: Self = serde_json::from_slice(text).map_err(|error| syntax(path, &error))?;
+        let is_judged = file.version >= JUDGED_VERSION;
         file.version = VERSION;
         for axis in &mut file.axes {
+            if !is_judged {
+                axis.invalid = rounding::coarse(axis);
+            }
             // Names are printed, and control characters would reach the terminal.
             axis.axis = one_line(&axis.axis);
         }

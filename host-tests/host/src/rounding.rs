@@ -4,27 +4,25 @@ use crate::{curve_file::AxisCurve, number::number, words};
 use allanite::{
     effect::{AngleRandomWalk, Effect},
     fit::{Fit, State},
-    integrity::Limits,
+    integrity::{Limits, Reason},
 };
 
 /// The smallest excess of angle random walk that is worth a note, in percent. Chosen by hand: rounding
 /// exceeds it at a noise of two counts rms or less.
 const LEAST_PERCENT: f64 = 1.0;
 
-/// Whether the noise is below half a count. The result of a fit then follows from the constant offset.
-pub fn is_coarse(axis: &AxisCurve) -> bool {
-    coarse_per_mille(axis).is_some()
-}
-
-/// The mean square of the differences of neighbours in thousandths of a count², if it is so small that the noise is below
-/// half a count.
-pub fn coarse_per_mille(axis: &AxisCurve) -> Option<u16> {
+/// Why a curve is not valid whose noise is below half a count, so that the result of a fit follows from the constant offset: the mean
+/// square of the differences of neighbours. This is for curves of which nothing else is known. Pulses of an angle are as
+/// small, and the samples of three axes show what they are.
+pub(crate) fn coarse(axis: &AxisCurve) -> Option<Reason> {
     let square = axis.rate_per_count * axis.rate_per_count;
     // A difference of neighbours has twice their Allan variance.
     let first = axis.octaves.first().filter(|octave| octave.m == 1)?;
     let per_mille = 1000.0 * 2.0 * first.variance / square;
     let is_coarse = per_mille < f64::from(Limits::DEFAULT.difference_per_mille);
-    is_coarse.then_some(per_mille as u16)
+    is_coarse.then_some(Reason::Coarse {
+        per_mille: per_mille as u16,
+    })
 }
 
 /// A note on the share of rounding in an axis, or `None` if there is nothing to tell.
@@ -33,13 +31,6 @@ pub fn coarse_per_mille(axis: &AxisCurve) -> Option<u16> {
 /// (Widrow & Kollár 2008, chapter 4). Below that, the result of the fit follows from the constant offset.
 pub fn note(axis: &AxisCurve, fit: &Fit) -> Option<String> {
     let square = axis.rate_per_count * axis.rate_per_count;
-    if is_coarse(axis) {
-        return Some(
-            "the noise is below half a count, so that the coefficients follow from the constant \
-             offset: use a finer range"
-                .into(),
-        );
-    }
     let name = AngleRandomWalk.description().name;
     let mut coefficients = fit.coefficients.iter();
     let white = coefficients.find(|one| one.name == name && one.state == State::Measured)?;

@@ -4,9 +4,9 @@ use allanite::{
     Accumulator, Axis, Error, Scale,
     axis::AxisRecord,
     integrity::{Limits, Reason},
-    self_test::{Failure, InvalidPlan, Limit, Plan, SelfTest, Status},
+    self_test::{BIAS, Failure, InvalidPlan, Limit, Plan, SelfTest, Status},
 };
-use allanite_host::simulate::{Preset, Simulator};
+use allanite_host::simulate::{Coefficients, Preset, Simulator};
 
 const RATE_HZ: f64 = 100.0;
 /// The size of a count, in °/s.
@@ -92,6 +92,70 @@ fn a_gyro_at_its_limit_is_undecided_with_the_time_that_it_would_take() {
     // The limit is on a rate random walk that does not show within five minutes.
     let (status, _) = run(plan("rate_random_walk", 1e-5));
     assert!(matches!(status, Status::Undecided { .. }), "{status:?}");
+}
+
+#[test]
+fn a_gyro_with_a_bias_fails_its_limit_and_one_without_passes() {
+    let judged = |bias: i32| {
+        let (mut test, mut gyro) = (
+            SelfTest::new(plan(BIAS, 0.5), scale()).unwrap(),
+            Gyro::new(),
+        );
+        let status = verdict(&mut test, &mut gyro, |_, count| count + bias);
+        (status, gyro.samples())
+    };
+    assert_eq!(judged(0), (Status::Passed, 1000));
+    // 15 °/s, to either side.
+    for bias in [150_000, -150_000] {
+        let (status, samples) = judged(bias);
+        let Status::Failed(Failure::Limit { limit, value }) = status else {
+            panic!("{status:?}");
+        };
+        assert_eq!((limit.effect, samples), ("bias", 1000));
+        assert!((value - 15.0).abs() < 0.05, "{value}");
+    }
+}
+
+#[test]
+fn a_bias_at_its_limit_passes_as_seldom_as_the_plan_says() {
+    // White noise of 0.005 °/s/√Hz.
+    let white = Coefficients {
+        angle_random_walk: 0.005,
+        ..Coefficients::default()
+    };
+    let of = |seed: u64, bias: f64| {
+        let mut plan = plan(BIAS, 0.01);
+        (plan.false_pass, plan.false_fail) = (0.05, 0.05);
+        let mut test = SelfTest::<16>::new(plan, scale()).unwrap();
+        let mut gyro = Gyro::new();
+        for rate in Simulator::new(white, RATE_HZ, seed) {
+            gyro.push(((rate + bias) / UNIT).round() as i32);
+            match look(&mut test, &gyro) {
+                Status::Running { .. } => {}
+                status => return status,
+            }
+        }
+        unreachable!()
+    };
+    // Twice the noise of a minute above the limit, at it, and below.
+    let count = |bias: f64| {
+        let mut counts = [0; 3];
+        for seed in 0..300 {
+            let place = match of(seed, bias) {
+                Status::Passed => 0,
+                Status::Failed(_) => 1,
+                _ => 2,
+            };
+            counts[place] += 1;
+        }
+        counts
+    };
+    let [passed, failed, _] = count(0.01);
+    assert!(passed <= 25 && failed <= 25, "{passed} {failed}");
+    let [passed, ..] = count(0.008);
+    assert!(passed > 290, "{passed}");
+    let [_, failed, _] = count(-0.012);
+    assert!(failed > 290, "{failed}");
 }
 
 #[test]

@@ -91,6 +91,12 @@
 #define ALLANITE_MAX_SHAPES 6
 #endif
 
+#if defined(ALLANITE_WHOLE)
+// Stands for the mean rate where a limit asks for the code of an effect: the bias of a gyro at rest, with the part of the
+// earth's rate that it sees.
+#define ALLANITE_LIMIT_BIAS -1
+#endif
+
 // The number of axes of a record.
 #define ALLANITE_AXES 3
 
@@ -113,16 +119,16 @@
 #endif
 
 // Words of an `AllaniteGyro`.
-#define ALLANITE_GYRO_WORDS (3274 + (66 * ALLANITE_OCTAVES))
+#define ALLANITE_GYRO_WORDS (3282 + (66 * ALLANITE_OCTAVES))
 
 // Words of an `AllaniteAxis`.
-#define ALLANITE_AXIS_WORDS (23 + (12 * ALLANITE_OCTAVES))
+#define ALLANITE_AXIS_WORDS (24 + (12 * ALLANITE_OCTAVES))
 
 // Words of an `AllaniteRecord`.
 #define ALLANITE_RECORD_WORDS (472 + (7 * ALLANITE_OCTAVES))
 
 // Words of an `AllaniteSelfTest`.
-#define ALLANITE_SELF_TEST_WORDS 36
+#define ALLANITE_SELF_TEST_WORDS 38
 
 // Words of an `AllaniteLook`.
 #define ALLANITE_LOOK_WORDS (74 + (3 * ALLANITE_OCTAVES))
@@ -134,7 +140,7 @@
 #define ALLANITE_CERTIFICATE_WORDS 560
 
 // Bytes of a buffer for any snapshot of a record and a self-test.
-#define ALLANITE_SNAPSHOT_BYTES (20300 + (307 * ALLANITE_OCTAVES))
+#define ALLANITE_SNAPSHOT_BYTES (20325 + (307 * ALLANITE_OCTAVES))
 
 // Bytes of a buffer for any certificate.
 #define ALLANITE_CERTIFICATE_BYTES 3700
@@ -601,11 +607,12 @@ typedef struct {
 #endif
 
 #if defined(ALLANITE_WHOLE)
-// The largest value that a coefficient may have.
+// The largest value that a coefficient or the mean rate may have.
 typedef struct {
-  // The code of one of the five terms of IEEE Std 952, such as `ALLANITE_EFFECT_ANGLE_RANDOM_WALK`.
+  // The code of one of the five terms of IEEE Std 952, such as `ALLANITE_EFFECT_ANGLE_RANDOM_WALK`, or
+  // `ALLANITE_LIMIT_BIAS`.
   int32_t effect;
-  // The largest value, in the coefficient's unit.
+  // The largest value, in the coefficient's unit; of the mean rate, that of either sign, in rate units.
   float most;
 } AllaniteLimit;
 #endif
@@ -615,7 +622,7 @@ typedef struct {
 typedef struct {
   // How it stands.
   AllaniteVerdict verdict;
-  // The code of the effect whose limit is not kept or undecided; 0 otherwise.
+  // The code of the effect whose limit is not kept or undecided, or `ALLANITE_LIMIT_BIAS`; 0 otherwise.
   int32_t effect;
   // The value above its limit, or the p-value of a misfit, or the progress from 0 to 1; 0 otherwise.
   float value;

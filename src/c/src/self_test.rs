@@ -10,7 +10,7 @@ use crate::{
 use allanite::{
     Real, Scale,
     effect::IEEE_952,
-    self_test::{Failure, Limit, Look, Plan, SelfTest, Status},
+    self_test::{BIAS, Failure, Limit, Look, Plan, SelfTest, Status},
     storage::EffectCode,
 };
 use heapless::Vec;
@@ -41,13 +41,18 @@ unsafe impl Memory for AllaniteLook {
     const MARK: u64 = 0x6779_726f_0000_0004 + ALLANITE_OCTAVES as u64 * 0x100;
 }
 
-/// The largest value that a coefficient may have.
+/// Stands for the mean rate where a limit asks for the code of an effect: the bias of a gyro at rest, with the part of the
+/// earth's rate that it sees.
+pub const ALLANITE_LIMIT_BIAS: i32 = -1;
+
+/// The largest value that a coefficient or the mean rate may have.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct AllaniteLimit {
-    /// The code of one of the five terms of IEEE Std 952, such as `ALLANITE_EFFECT_ANGLE_RANDOM_WALK`.
+    /// The code of one of the five terms of IEEE Std 952, such as `ALLANITE_EFFECT_ANGLE_RANDOM_WALK`, or
+    /// `ALLANITE_LIMIT_BIAS`.
     pub effect: i32,
-    /// The largest value, in the coefficient's unit.
+    /// The largest value, in the coefficient's unit; of the mean rate, that of either sign, in rate units.
     pub most: f32,
 }
 
@@ -91,7 +96,7 @@ pub enum AllaniteVerdict {
 pub struct AllaniteTestStatus {
     /// How it stands.
     pub verdict: AllaniteVerdict,
-    /// The code of the effect whose limit is not kept or undecided; 0 otherwise.
+    /// The code of the effect whose limit is not kept or undecided, or `ALLANITE_LIMIT_BIAS`; 0 otherwise.
     pub effect: i32,
     /// The value above its limit, or the p-value of a misfit, or the progress from 0 to 1; 0 otherwise.
     pub value: f32,
@@ -101,8 +106,11 @@ pub struct AllaniteTestStatus {
     pub reason: AllaniteReason,
 }
 
-/// The code of one of the five terms, by its name.
+/// The code of a limit, by its name.
 fn code(name: &str) -> i32 {
+    if name == BIAS {
+        return ALLANITE_LIMIT_BIAS;
+    }
     let effect = IEEE_952.iter().find(|effect| effect.name() == name);
     effect.map_or(0, |effect| EffectCode::of(*effect).number().into())
 }
@@ -194,8 +202,12 @@ pub unsafe extern "C" fn allanite_self_test_init(
             let mut effects = IEEE_952.iter();
             let effect =
                 effects.find(|one| i32::from(EffectCode::of(**one).number()) == limit.effect);
+            let name = match limit.effect {
+                ALLANITE_LIMIT_BIAS => BIAS,
+                _ => effect.ok_or(AllaniteStatus::InvalidPlan)?.name(),
+            };
             let limit = Limit {
-                effect: effect.ok_or(AllaniteStatus::InvalidPlan)?.name(),
+                effect: name,
                 most: limit.most.into(),
             };
             named.push(limit).map_err(|_| AllaniteStatus::InvalidPlan)?;

@@ -161,6 +161,20 @@ where
         Ok(())
     }
 
+    /// The accumulators of the axes, then those of the covariates.
+    #[cfg(feature = "storage")]
+    pub(crate) fn accumulators(&self) -> impl Iterator<Item = &Accumulator<OCTAVES>> {
+        let axes = self.axes.iter().map(|axis| &axis.accumulator);
+        axes.chain(&self.covariates)
+    }
+
+    /// The same, to be rebuilt.
+    #[cfg(feature = "storage")]
+    pub(crate) fn accumulators_mut(&mut self) -> impl Iterator<Item = &mut Accumulator<OCTAVES>> {
+        let axes = self.axes.iter_mut().map(|axis| &mut axis.accumulator);
+        axes.chain(&mut self.covariates)
+    }
+
     #[inline(always)]
     pub(crate) fn push(&mut self, sample: &Sample<AXES, COVARIATES>) {
         self.sum(sample, true);

@@ -10,7 +10,6 @@ use allanite::{
     detection::{Detection, Ranges},
     diagnosis::{Options, Step, Verdict},
     effect::CATALOGUE,
-    integrity::Reason,
     spectrum::Spectrum,
     storage::{
         AxisCertificate, Certificate, CertifiedLimit, Conditions, MAX_AXES, MAX_DEVICE_BYTES,
@@ -21,7 +20,6 @@ use allanite_host::{
     curve_file::{AxisCurve, CurveFile},
     dependence::candidates::Candidates,
     diagnosis::{diagnose, go_on},
-    rounding,
 };
 use allanite_log::{
     BINS, Evidence, OCTAVES,
@@ -190,7 +188,7 @@ fn of_axis(
     let record = Record {
         course: densities.as_ref(),
         kurtosis: Some(&evidence.kurtosis),
-        invalid: evidence.invalid.or_else(|| coarse(axis)),
+        invalid: evidence.invalid,
         ..candidates.record(&curve, &spectrum)
     };
     let mut certified = AxisCertificate::empty();
@@ -230,9 +228,4 @@ fn of_axis(
         certified.findings.set_events(&analysis.events);
     }
     Ok(certified)
-}
-
-/// Why a curve is not valid whose noise is below half a count, so that rounding hides it.
-fn coarse(axis: &AxisCurve) -> Option<Reason> {
-    rounding::coarse_per_mille(axis).map(|per_mille| Reason::Coarse { per_mille })
 }

@@ -7,7 +7,7 @@ use crate::{
     disturbance::invalid,
     judgement::Judgement,
     limit::LimitArgument,
-    record, rounding,
+    record,
     tried::{self, TriedCovariate},
     words,
 };
@@ -159,9 +159,9 @@ impl Fitted {
         }
     }
 
-    /// Whether the curve is valid: the samples are, and rounding does not hide their noise.
-    pub fn is_valid(&self) -> bool {
-        self.invalid.is_none() && !rounding::is_coarse(&self.axis)
+    /// Whether the curve is valid.
+    pub const fn is_valid(&self) -> bool {
+        self.invalid.is_none()
     }
 
     /// Notes on what was recorded alongside, a sentence each.

@@ -44,7 +44,6 @@ pub fn print(fitted: &[Fitted], output: &mut impl Write) -> io::Result<()> {
         }
         let note = rounding::note(axis, &fitted.fit);
         // Whether the model explains a curve that is not valid does not matter.
-        let is_coarse = rounding::is_coarse(axis);
         let is_invalid = !fitted.is_valid();
         let lines = verdict(fitted);
         for line in lines.iter().take(if is_invalid { 1 } else { lines.len() }) {
@@ -52,7 +51,6 @@ pub fn print(fitted: &[Fitted], output: &mut impl Write) -> io::Result<()> {
         }
         match (&fitted.invalid, note) {
             (Some(reason), _) => writeln!(output, "The curve is not valid: {reason}.")?,
-            (None, Some(note)) if is_coarse => writeln!(output, "The curve is not valid: {note}.")?,
             (None, Some(note)) => writeln!(output, "Note: {note}.")?,
             (None, None) => {}
         }

@@ -78,14 +78,17 @@ fn watch(folder: &Path) {
     assert!(watched.status.success(), "{said}");
 }
 
-/// Whether the noise of a record is exported for a filter, and whether it should be: no axis is one of a mixture.
+/// Whether the noise of a record is exported for a filter, and whether it should be: each axis is valid, stationary and explained.
 fn is_exported(folder: &Path) -> (bool, bool) {
     let output = run(folder, &about("export", &["--format=csv"]));
     let document = json(folder, &about("fit", &[]));
     let mut axes = document["axes"].as_array().unwrap().iter();
-    let is_steady =
-        axes.all(|axis| axis["reason"].is_null() && axis["verdict"] != "not_stationary");
-    (output.status.success(), is_steady)
+    let is_refused = |verdict: &str| ["not_stationary", "unexplained"].contains(&verdict);
+    let is_explained = axes.all(|axis| {
+        let verdict = axis["verdict"].as_str().unwrap();
+        axis["reason"].is_null() && !is_refused(verdict)
+    });
+    (output.status.success(), is_explained)
 }
 
 /// What each door says of a record.
@@ -132,8 +135,8 @@ impl Count {
                 let fit = all[1].1.as_str();
                 count.records += 1;
                 let what = format!("{event:?} in {noise:?}, {samples} samples");
-                let (is_exported, is_steady) = is_exported(folder.path());
-                if all.iter().any(|(_, said)| said != fit) || is_exported != is_steady {
+                let (is_exported, is_explained) = is_exported(folder.path());
+                if all.iter().any(|(_, said)| said != fit) || is_exported != is_explained {
                     let unequal = format!("{what}: {all:?}, exported {is_exported}");
                     count.unequal.push(unequal);
                 }

@@ -15,11 +15,7 @@ pub use levels::{SpectrumLevel, SpectrumLevels};
 
 use crate::rounding;
 use allanite::{
-    Curve, Scale,
-    course::{CosineTransform, Course},
-    integrity::Reason,
-    octave::Bridged,
-    spectrum::Spectrum,
+    Curve, Scale, course::CosineTransform, integrity::Reason, octave::Bridged, spectrum::Spectrum,
 };
 use allanite_log::{
     self as log, BINS, OCTAVES,
@@ -104,22 +100,12 @@ pub struct AxisCurve {
     /// have none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pieces: Option<Pieces>,
-    /// The mean rate, in rate units, by the course. Files before version 6 have none.
+    /// The mean rate, in rate units. Files before version 6 have none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mean_rate: Option<f64>,
     /// Why the record is not one of a gyro at rest, if it is not. Files before version 6 do not say it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub invalid: Option<Reason>,
-}
-
-/// The mean rate of a course, in rate units.
-fn mean_rate(course: &Course, scale: Scale) -> Option<f64> {
-    let blocks = course.blocks(scale).filter(|block| block.samples > 0);
-    let (sum, samples) = blocks.fold((0.0, 0.0), |(sum, samples), block| {
-        let own = f64::from(block.samples);
-        (sum + own * block.mean, samples + own)
-    });
-    (samples > 0.0).then(|| sum / samples)
 }
 
 fn is_zero(number: &u64) -> bool {
@@ -315,7 +301,10 @@ impl AxisCurve {
             rate_per_count: axis.rate_per_count,
             samples: axis.accumulator.samples(),
             first_sample: 0,
-            mean_rate: evidence.and_then(|evidence| mean_rate(evidence.course.as_ref()?, scale)),
+            mean_rate: axis
+                .accumulator
+                .mean_rate(scale)
+                .map(|mean| axis.zero + mean),
             gaps: axis.accumulator.gaps(),
             bridged: *axis.accumulator.bridged(),
             source: None,

@@ -1,7 +1,12 @@
 //! What a record is, decided once: every command that says whether a model explains a record asks here.
 
-use crate::{diagnose::diagnosed::Diagnosed, verdict, words};
-use allanite::{Coefficient, Model, diagnosis::Verdict, effect::Effect, fit::Fit};
+use crate::{curve_file::AxisCurve, diagnose::diagnosed::Diagnosed, verdict, words};
+use allanite::{
+    Coefficient, Model,
+    diagnosis::Verdict,
+    effect::Effect,
+    fit::{Fit, State},
+};
 
 /// The verdict of a diagnosis on an axis, as a command says it that does not show the diagnosis.
 #[derive(Clone, Debug)]
@@ -55,6 +60,24 @@ impl Judgement {
         let at =
             terms.position(|term| term.effect.name() == effect || replaces(term.effect, effect))?;
         fit.coefficients.get(at)
+    }
+
+    /// The standard error of the mean of so many samples, in rate units: their Allan deviation in the model that explains the
+    /// record, or that of its longest octave if none does.
+    pub fn error_of_mean(&self, axis: &AxisCurve) -> Option<f64> {
+        let of_octave = || Some(axis.octaves.last()?.variance);
+        let of_model = self.explained.as_ref().map(|(model, fit)| {
+            let coefficients = fit.coefficients.iter();
+            let shown = |found: &Coefficient| match found.state {
+                State::Measured => found.value * found.value,
+                _ => 0.0,
+            };
+            let squares: Vec<f64> = coefficients.map(shown).collect();
+            let samples = u32::try_from(axis.samples).unwrap_or(u32::MAX);
+            model.variance(&squares, samples, 1.0 / axis.rate_hz)
+        });
+        let variance = of_model.filter(|&variance| variance > 0.0);
+        variance.or_else(of_octave).map(f64::sqrt)
     }
 
     /// The model that was asked about, in a sentence below its table. `behind` names the filter that it has.

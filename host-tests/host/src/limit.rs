@@ -1,17 +1,29 @@
 //! A limit of a coefficient, as an option of the command line.
 
 use crate::units;
-use allanite::effect::{CATALOGUE, Effect, IEEE_952};
+use allanite::{
+    effect::{CATALOGUE, Effect, IEEE_952},
+    self_test::BIAS,
+};
 use allanite_log::{
     failure::{Failure, quoted},
     unit::Unit,
 };
 
-/// The largest value that a coefficient may have, as it was given.
+/// What a limit is of.
+#[derive(Clone, Copy)]
+pub enum Limited {
+    /// The coefficient of an effect.
+    Coefficient(&'static dyn Effect),
+    /// The mean rate, of either sign.
+    Bias,
+}
+
+/// The largest value that a coefficient or the mean rate may have, as it was given.
 #[derive(Clone)]
 pub struct LimitArgument {
     text: String,
-    effect: &'static dyn Effect,
+    limited: Limited,
     value: f64,
     /// The name of the unit; empty for that of the input.
     unit: String,
@@ -42,12 +54,16 @@ impl LimitArgument {
         let mut effects = IEEE_952.into_iter().chain(CATALOGUE);
         let name = name.trim();
         let found = effects.find(|effect| effect.name() == name || effect.symbol() == name);
-        let Some(effect) = found else {
-            return Err(refused(
-                text,
-                "there is no such effect",
-                "give a symbol such as N, or a name such as angle_random_walk",
-            ));
+        let limited = match found {
+            Some(effect) => Limited::Coefficient(effect),
+            None if name == BIAS => Limited::Bias,
+            None => {
+                return Err(refused(
+                    text,
+                    "there is no such effect",
+                    "give a symbol such as N, a name such as angle_random_walk, or bias",
+                ));
+            }
         };
         let (number, unit) = split(value.trim());
         let Some(value) = number.filter(|value| value.is_finite() && *value > 0.0) else {
@@ -59,7 +75,7 @@ impl LimitArgument {
         };
         Ok(Self {
             text: text.to_owned(),
-            effect,
+            limited,
             value,
             unit: unit.to_owned(),
         })
@@ -91,18 +107,48 @@ impl LimitArgument {
         refused(&self.text, &what, "limit Q, N, B, K or R")
     }
 
-    /// The name of the effect.
-    pub fn name(&self) -> &'static str {
-        self.effect.name()
+    /// What it is of.
+    pub const fn limited(&self) -> Limited {
+        self.limited
     }
 
-    /// The limit for rates in this unit.
+    /// The name of the effect, or that of the bias.
+    pub fn name(&self) -> &'static str {
+        match self.limited {
+            Limited::Coefficient(effect) => effect.name(),
+            Limited::Bias => BIAS,
+        }
+    }
+
+    /// The limit of a coefficient for rates in this unit.
     ///
     /// # Errors
-    /// When the coefficient has no such unit.
+    /// When the coefficient has no such unit, or it is a limit of the bias.
     pub fn of_unit(&self, unit: Unit) -> Result<Limit, Failure> {
-        let (effect, own) = (self.effect, units::unit(unit, self.effect.half_seconds()));
-        let customary = units::customary(unit, effect.half_seconds());
+        match self.limited {
+            Limited::Coefficient(effect) => Ok(Limit {
+                effect,
+                value: self.value_in(unit)?,
+            }),
+            Limited::Bias => Err(refused(
+                &self.text,
+                "a lot is that of coefficients, and a certificate has no mean rate",
+                "judge each log by `fit --limit bias=VALUE`",
+            )),
+        }
+    }
+
+    /// The largest value for rates in this unit.
+    ///
+    /// # Errors
+    /// When the quantity has no such unit.
+    pub fn value_in(&self, unit: Unit) -> Result<f64, Failure> {
+        let half_seconds = match self.limited {
+            Limited::Coefficient(effect) => effect.half_seconds(),
+            Limited::Bias => 0,
+        };
+        let own = units::unit(unit, half_seconds);
+        let customary = units::customary(unit, half_seconds);
         let given = plain(&self.unit);
         let factor = match customary {
             _ if given.is_empty() || given == plain(&own) => 1.0,
@@ -111,15 +157,12 @@ impl LimitArgument {
                 let also = customary.map_or(String::new(), |(_, name)| format!(" or {name}"));
                 return Err(refused(
                     &self.text,
-                    &format!("{} has no such unit", effect.name()),
+                    &format!("{} has no such unit", self.name()),
                     &format!("give it in {own}{also}"),
                 ));
             }
         };
-        Ok(Limit {
-            effect,
-            value: self.value / factor,
-        })
+        Ok(self.value / factor)
     }
 }
 
@@ -161,10 +204,8 @@ mod tests {
     use super::*;
 
     fn value(text: &str) -> Result<f64, String> {
-        let limit = LimitArgument::parse(text).and_then(|one| one.of_unit(Unit::DegreesPerSecond));
-        limit
-            .map(|limit| limit.value)
-            .map_err(|failure| failure.to_string())
+        let limit = LimitArgument::parse(text).and_then(|one| one.value_in(Unit::DegreesPerSecond));
+        limit.map_err(|failure| failure.to_string())
     }
 
     #[test]
@@ -181,6 +222,8 @@ mod tests {
             ("Q=18 arcsec", 0.005),
             ("R=64800°/h²", 0.005),
             ("K=1.08e3 deg/h^1.5", 0.005),
+            ("bias=0.005", 0.005),
+            ("bias = 18 deg/h", 0.005),
         ] {
             let found = value(text).unwrap();
             assert!((found / expected - 1.0).abs() < 1e-12, "{text}: {found}");
@@ -196,6 +239,7 @@ mod tests {
             ("N=nan", "is not a positive number"),
             ("N=deg/s", "is not a positive number"),
             ("N=0.3 °/h", "give it in deg/s/√Hz or °/√h"),
+            ("bias=3°/√h", "give it in deg/s or °/h"),
         ] {
             let refusal = value(text).unwrap_err();
             assert!(refusal.contains(what), "{text}: {refusal}");

@@ -139,6 +139,7 @@ impl Live {
         let axis = |(axis, (name, spectrum)): (usize, (&String, &SpectrumSums))| Axis {
             name: name.clone(),
             rate_per_count,
+            zero: 0.0,
             accumulator: self.sums.accumulator(axis).clone(),
             spectrum: spectrum.clone(),
             evidence: Some(Evidence {

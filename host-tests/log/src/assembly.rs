@@ -52,6 +52,7 @@ impl Assembly<'_> {
             let mut axis = Axis {
                 name,
                 rate_per_count: self.scaling.scale * quantum.step(),
+                zero: self.scaling.scale * quantum.value(0.0),
                 accumulator: sums.accumulator().clone(),
                 spectrum: sums.spectrum().clone(),
                 evidence: None,

@@ -283,6 +283,8 @@ pub struct Axis {
     pub name: String,
     /// The scale, in rate units per count of the accumulator.
     pub rate_per_count: f64,
+    /// The rate of count 0, in rate units: a reader of floats takes counts from the middle of their range.
+    pub zero: f64,
     /// The accumulator with all samples of the axis.
     pub accumulator: Accumulator<OCTAVES>,
     /// The spectrum of the same samples.

@@ -25,6 +25,7 @@ fn curve(samples: u32, gap: bool) -> AxisCurve {
         }
     }
     let axis = Axis {
+        zero: 0.0,
         spectrum,
         name: "gx".into(),
         rate_per_count: 0.05,
@@ -106,6 +107,7 @@ fn sums_beyond_64_bits_keep_every_digit() {
         accumulator.push(if i / 8 % 2 == 0 { i32::MIN } else { i32::MAX });
     }
     let axis = Axis {
+        zero: 0.0,
         spectrum: SpectrumSums::new(),
         name: "gx".into(),
         rate_per_count: 1e-9,

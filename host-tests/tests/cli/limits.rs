@@ -1,7 +1,7 @@
 //! `fit --limit`: the verdicts of a station, and the exit status that tells them.
 
 use allanite_host::verdict::{UNDECIDED, UNDECIDED_INVALID};
-use program::{ADIS16405, output, refusal, run};
+use program::{ADIS16405, json, number, output, refusal, run};
 use serde_json::Value;
 use std::path::Path;
 use tempfile::TempDir;
@@ -35,6 +35,73 @@ fn judged(folder: &Path, arguments: &[&str]) -> (Option<i32>, Vec<String>) {
         .lines()
         .filter(|line| line.contains("limit ") && line.contains('≤'));
     (run.status.code(), lines.map(str::to_owned).collect())
+}
+
+#[test]
+fn a_mean_rate_is_that_of_the_log_and_keeps_a_limit_or_not() {
+    let folder = TempDir::new().unwrap();
+    let folder = folder.path();
+    // Counts, decimals, and decimals in another unit and far from zero, whose readers take counts from the middle of their range.
+    let noise = |n: u32| f64::from(n.wrapping_mul(0x9E37_79B1) >> 24) / 128.0 - 1.0;
+    let rows = |value: &dyn Fn(f64) -> String| -> String {
+        let lines = (0..4000).map(|n| format!("{}\n", value(noise(n))));
+        std::iter::once("gx\n".to_owned()).chain(lines).collect()
+    };
+    let mean = (0..4000).map(noise).sum::<f64>() / 4000.0;
+    let cases: [(String, &[&str], f64); 3] = [
+        (
+            rows(&|x| format!("{}", (1500.0 + 8.0 * x).round())),
+            &["--scale=0.01", "--unit=deg/s"],
+            15.0 + 0.08 * mean,
+        ),
+        (
+            rows(&|x| format!("{:.6}", 15.0 + x)),
+            &["--unit=deg/s"],
+            15.0 + mean,
+        ),
+        (
+            rows(&|x| format!("{:.6}", -0.75 + 0.01 * x)),
+            &["--unit=rad/s"],
+            -0.75 + 0.01 * mean,
+        ),
+    ];
+    for (text, unit, expected) in cases {
+        std::fs::write(folder.join("log.csv"), text).unwrap();
+        let about = [&["-q", "fit", "log.csv", "--rate=100"], unit].concat();
+        let found = number(&json(folder, &about)["axes"][0]["mean_rate"]);
+        assert!((found - expected).abs() < 1e-3, "{found} {expected}");
+        for (most, status, word) in [
+            (0.9 * expected.abs(), 1, "fail"),
+            (1.2 * expected.abs(), 0, "pass"),
+        ] {
+            let limit = format!("--limit=bias={most}");
+            let (found, lines) = judged(folder, &[&about[..], &[&limit]].concat());
+            assert_eq!(found, Some(status), "{lines:?}");
+            assert!(lines[0].ends_with(word), "{lines:?}");
+        }
+        // A curve file keeps the mean.
+        output(
+            folder,
+            &[
+                &[
+                    "-q",
+                    "measure",
+                    "log.csv",
+                    "--rate=100",
+                    "--output=curve.json",
+                ],
+                unit,
+            ]
+            .concat(),
+        );
+        let kept = number(&json(folder, &["fit", "curve.json"])["axes"][0]["mean_rate"]);
+        assert_eq!(kept.to_bits(), found.to_bits());
+    }
+    let refused = refusal(folder, &["-q", "lot", "curve.json", "--limit=bias=1"]);
+    assert!(
+        refused.contains("judge each log by `fit --limit bias=VALUE`"),
+        "{refused}"
+    );
 }
 
 #[test]

@@ -216,8 +216,7 @@ pub fn fitted(
         let judgement = Judgement::of(&diagnosed);
         let mut fitted = Fitted::with_evidence(path, axis, model, method, evidence)?;
         let (fit, is_valid) = (&fitted.fit, fitted.is_valid());
-        let unit = fitted.axis.unit;
-        fitted.limits = Judged::all(fit, &judgement, is_valid, unit, settings.limits)?;
+        fitted.limits = Judged::all(fit, &judgement, is_valid, &fitted.axis, settings.limits)?;
         fitted.judgement = Some(judgement);
         Ok(fitted)
     };

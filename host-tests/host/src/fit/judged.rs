@@ -1,15 +1,17 @@
 //! A coefficient beside its limit, for a station that measures once and decides.
 
 use crate::{
+    confidence::TWO_SIDED_95,
+    curve_file::AxisCurve,
     judgement::Judgement,
-    limit::LimitArgument,
+    limit::{LimitArgument, Limited},
     number::number,
     units,
     verdict::{UNDECIDED, UNDECIDED_IN_MIXTURE, UNDECIDED_INVALID},
     words,
 };
-use allanite::fit::Fit;
-use allanite_log::{failure::Failure, unit::Unit};
+use allanite::{fit::Fit, self_test::BIAS};
+use allanite_log::failure::Failure;
 use serde::Serialize;
 use std::sync::atomic::{AtomicU8, Ordering};
 
@@ -60,22 +62,27 @@ pub struct Judged {
 
 impl Judged {
     /// What all limits say of an axis: of the coefficients of the model that explains the record, which are those of the five terms
-    /// if these explain it.
+    /// if these explain it, and of the mean rate.
     ///
     /// # Errors
-    /// When a limit is of an effect that is not fitted, or in a unit that its coefficient does not have.
+    /// When a limit is of an effect that is not fitted, or in a unit that its coefficient does not have, or of a mean rate that is
+    /// not known.
     pub fn all(
         fit: &Fit,
         judgement: &Judgement,
         is_valid: bool,
-        unit: Unit,
+        axis: &AxisCurve,
         limits: &[LimitArgument],
     ) -> Result<Vec<Self>, Failure> {
+        let unit = axis.unit;
         let judged = limits.iter().map(|limit| {
+            if let Limited::Bias = limit.limited() {
+                return Self::of_bias(judgement, is_valid, axis, limit);
+            }
             let mut coefficients = fit.coefficients.iter();
             let found = coefficients.find(|found| found.name == limit.name());
             let found = found.ok_or_else(|| limit.of_another_model())?;
-            let most = limit.of_unit(unit)?.value;
+            let most = limit.value_in(unit)?;
             let verdict = match judgement.coefficient(found.name) {
                 _ if !is_valid => Conformity::Invalid,
                 _ if judgement.event.is_some() => Conformity::NotStationary,
@@ -101,6 +108,42 @@ impl Judged {
             })
         });
         judged.collect()
+    }
+
+    /// What a limit says of the mean rate. It is what it is, whatever effect the curve lacks, so that a misfit does not keep it
+    /// from being decided.
+    fn of_bias(
+        judgement: &Judgement,
+        is_valid: bool,
+        axis: &AxisCurve,
+        limit: &LimitArgument,
+    ) -> Result<Self, Failure> {
+        let most = limit.value_in(axis.unit)?;
+        let unknown = || {
+            Failure::option(
+                format!(
+                    "--limit {BIAS}: the mean rate of {} is not known",
+                    axis.axis
+                ),
+                "give the log, or measure it again",
+            )
+        };
+        let mean = axis.mean_rate.ok_or_else(unknown)?.abs();
+        let half_width = TWO_SIDED_95 * judgement.error_of_mean(axis).ok_or_else(unknown)?;
+        Ok(Self {
+            effect: BIAS,
+            symbol: BIAS,
+            most,
+            unit: units::unit(axis.unit, 0),
+            verdict: match () {
+                () if !is_valid => Conformity::Invalid,
+                () if judgement.event.is_some() => Conformity::NotStationary,
+                () if mean - half_width > most => Conformity::Fail,
+                () if mean + half_width <= most => Conformity::Pass,
+                () => Conformity::GuardBand,
+            },
+            beside: Vec::new(),
+        })
     }
 
     /// The limit and the verdict in one line.

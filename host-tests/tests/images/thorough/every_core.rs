@@ -86,6 +86,7 @@ fn interrupted_watch_of_an_image_saves_the_curve_of_what_the_image_sent() {
             course.push(count, []);
         }
         let axis = Axis {
+            zero: 0.0,
             spectrum,
             name: "image".to_owned(),
             rate_per_count: 1.0,

@@ -40,8 +40,8 @@ pub(super) struct Arguments {
     #[arg(long, default_value = "covariance")]
     method: MethodName,
     /// The largest value that a coefficient may have, by its symbol or its name, in the unit of the input or in the customary
-    /// one: N=0.005, N=0.3°/√h, B=10deg/h. May be given several times. Exit status: 1 if a limit is exceeded, 3 if one is not
-    /// known to be kept
+    /// one: N=0.005, N=0.3°/√h, B=10deg/h; or the mean rate, of either sign: bias=0.5. May be given several times. Exit status:
+    /// 1 if a limit is exceeded, 3 if one is not known to be kept
     #[arg(long = "limit", value_name = "EFFECT=VALUE")]
     limits: Vec<String>,
     #[command(flatten)]

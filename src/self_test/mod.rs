@@ -133,6 +133,10 @@ pub enum Failure {
 /// do. Looks share samples, so that the errors are fewer than the plan allows. A decision is final: later
 /// looks do not repeat it.
 ///
+/// A gyro fails at any look, and passes limits of quantization, angle random walk and bias at any. Those of bias instability,
+/// rate random walk and rate ramp pass at the last look only: noise that is slower than the record so far is not in it, and the
+/// longest record of the plan says up to which time the limits hold.
+///
 /// # How to use it
 ///
 /// The test holds no samples. [`is_due`](Self::is_due) says after each sample whether a look is due, at the
@@ -435,7 +439,11 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
             };
             // The fit must lie on the same side, so that no value within the limit fails.
             if above < -self.pass && value < limit.most {
-                self.progress.kept.add(i);
+                if is_last || limit.passes_early() {
+                    self.progress.kept.add(i);
+                } else {
+                    open = Some((i, Real::INFINITY));
+                }
             } else if above > self.fail && limit.effect == BIAS {
                 // The mean of a record at rest is what it is, whatever effect its curve lacks.
                 return Status::Failed(Failure::Limit {

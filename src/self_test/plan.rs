@@ -23,6 +23,13 @@ pub struct Limit {
     pub most: Real,
 }
 
+impl Limit {
+    /// Whether a short record can show that it is kept. Slow noise shows in long records only.
+    pub(super) fn passes_early(&self) -> bool {
+        ["quantization", "angle_random_walk", BIAS].contains(&self.effect)
+    }
+}
+
 /// The requirements of a self-test.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

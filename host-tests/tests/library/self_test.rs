@@ -159,6 +159,22 @@ fn a_bias_at_its_limit_passes_as_seldom_as_the_plan_says() {
 }
 
 #[test]
+fn slow_terms_pass_at_the_last_look_only() {
+    let judged = |effect: &'static str| {
+        let (status, samples) = run(plan(effect, 0.2));
+        assert_eq!(status, Status::Passed, "{effect}");
+        samples
+    };
+    for effect in ["quantization", "angle_random_walk", BIAS] {
+        assert_eq!(judged(effect), 1000, "{effect}");
+    }
+    // Noise that is slower than the record so far is not in it.
+    for effect in ["bias_instability", "rate_random_walk", "rate_ramp"] {
+        assert_eq!(judged(effect), LAST, "{effect}");
+    }
+}
+
+#[test]
 fn looks_are_taken_once_per_octave_and_report_progress() {
     let mut test = SelfTest::<16>::new(plan("angle_random_walk", 0.00495), scale()).unwrap();
     let (mut gyro, mut looks, mut last) = (Gyro::new(), Vec::new(), None);

@@ -73,6 +73,7 @@ impl<'a> Arrays<'a> {
                 names: has_names.then(|| names.collect()),
                 looks,
                 heads,
+                tags: Vec::new(),
                 defined: Vec::new(),
                 said: String::new(),
             },

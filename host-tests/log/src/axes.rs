@@ -120,36 +120,6 @@ impl Columns {
         by_name
     }
 
-    /// Checks that the rows are those of one sensor. ArduPilot numbers the instances of its sensors in the column `I`.
-    ///
-    /// # Errors
-    /// When the first rows are those of several instances.
-    pub(super) fn check_instances(&self, path: &Path) -> Result<(), Failure> {
-        let is_instance =
-            |&column: &usize| matches!(self.name(column), Some("I" | "instance" | "Instance"));
-        for column in (0..self.looks.len()).filter(is_instance) {
-            let mut instances = self.heads[column].clone();
-            instances.sort_by(f64::total_cmp);
-            instances.dedup();
-            let is_repeated = 2 * instances.len() <= self.heads[column].len();
-            if let [first, _, ..] = instances[..]
-                && is_repeated
-            {
-                let (name, number) = (self.called(column), column + 1);
-                return Err(Place::file(path).failure(
-                    format!(
-                        "the rows are those of {} sensors, by column {name}",
-                        instances.len()
-                    ),
-                    format!(
-                        "keep one of them, such as with `awk -F, 'NR == 1 || ${number} == {first}'`"
-                    ),
-                ));
-            }
-        }
-        Ok(())
-    }
-
     /// Three columns of numbers, one behind the other, that are the axes of something which their names do not tell.
     fn unknown_triple(&self, known: &[usize]) -> Option<[usize; 3]> {
         let is_free = |column: usize| {
@@ -177,15 +147,7 @@ impl Columns {
         let &[x, y, z] = beside.as_slice() else {
             return false;
         };
-        let mean = |column: usize| {
-            let head = &self.heads[column];
-            head.iter().sum::<f64>() / head.len() as f64
-        };
-        let norm = [x, y, z]
-            .map(|column| mean(column).powi(2))
-            .iter()
-            .sum::<f64>()
-            .sqrt();
+        let norm = self.norm([x, y, z]);
         let scatter = |axis: &AxisColumn| {
             let head = &self.heads[axis.column];
             let squares = head.windows(2).map(|pair| (pair[1] - pair[0]).powi(2));
@@ -193,6 +155,25 @@ impl Columns {
         };
         let is_gyro = self.sensor_of(axes) == Some(Sensor::Gyro);
         is_gyro && GRAVITY.contains(&norm) && axes.iter().all(|axis| scatter(axis) < QUIET)
+    }
+
+    /// Whether these are three axes of an accelerometer that feel 0.95 to 1.05 units of gravity: then their unit is g.
+    pub(super) fn is_in_g(&self, axes: &[AxisColumn]) -> bool {
+        let &[ref x, ref y, ref z] = axes else {
+            return false;
+        };
+        let is_accelerometer = self.sensor_of(axes) == Some(Sensor::Accelerometer);
+        is_accelerometer && (0.95..1.05).contains(&self.norm([x, y, z].map(|axis| axis.column)))
+    }
+
+    /// The length of the mean of three columns.
+    fn norm(&self, columns: [usize; 3]) -> f64 {
+        let mean = |column: usize| {
+            let head = &self.heads[column];
+            head.iter().sum::<f64>() / head.len() as f64
+        };
+        let squares = columns.map(|column| mean(column).powi(2));
+        squares.iter().sum::<f64>().sqrt()
     }
 
     /// The convention that all these columns follow.
@@ -329,6 +310,7 @@ mod tests {
             names: names.map(|names| names.iter().map(|&name| name.into()).collect()),
             looks: looks.to_vec(),
             heads: Vec::new(),
+            tags: Vec::new(),
             defined: Vec::new(),
             said: String::new(),
         };

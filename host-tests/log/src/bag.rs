@@ -5,7 +5,7 @@ use super::{
     channel::{Budget, Channel, Layouts, MOST_CHANNELS, Show},
     columns::{AxisColumn, Columns, Look},
     converted::{Converted, Text},
-    imu_message::{COLUMNS, Encoding, ImuMessage},
+    imu_message::{COLUMNS, Encoding, ImuMessage, frame_of},
     message_layout::{Layout, Value},
     metadata::Metadata,
     table::{Ended, Stop, Table, Visitor, after_stop},
@@ -56,6 +56,7 @@ impl Bag {
         let wanted = options.topic.as_deref();
         // The first messages of the topic that is read, which is the first one if it is the only one.
         let mut first: Option<(Rc<str>, Vec<ImuMessage>)> = None;
+        let mut frames = BTreeSet::new();
         let channels = each_message(container, &files, progress, &mut |channel, bytes| {
             if wanted.is_some_and(|wanted| *channel.topic != *wanted) {
                 return Ok(ControlFlow::Continue(()));
@@ -65,11 +66,23 @@ impl Bag {
                     first.get_or_insert_with(|| (channel.topic.clone(), Vec::new()));
                 if *topic == channel.topic && first.len() < LOOKS {
                     first.extend(ImuMessage::read(bytes, encoding));
+                    frames.extend(frame_of(bytes, encoding));
                 }
             }
             Ok(ControlFlow::Continue(()))
         })?;
         let topic = choose(path, &channels, wanted)?;
+        if frames.len() > 1 && first.as_ref().is_some_and(|(of, _)| **of == *topic) {
+            let shown: Vec<String> = frames.iter().map(|one| quoted(one.as_bytes())).collect();
+            return Err(Place::file(path).failure(
+                format!(
+                    "the messages of topic {topic} are those of {} sensors, by their frame: {}",
+                    frames.len(),
+                    shown.join(", ")
+                ),
+                "give each sensor a topic of its own, or keep the messages of one frame",
+            ));
+        }
         let (_, first) = first.filter(|(of, _)| **of == *topic).unwrap_or_default();
         let column = |column: usize| -> Vec<f64> {
             let value = |message: &ImuMessage| match column.checked_sub(1) {
@@ -98,6 +111,7 @@ impl Bag {
                 names: Some(COLUMNS.map(String::from).to_vec()),
                 looks: vec![Look::Number; COLUMNS.len()],
                 heads: (0..COLUMNS.len()).map(column).collect(),
+                tags: Vec::new(),
                 defined: Vec::new(),
                 said: String::new(),
             },

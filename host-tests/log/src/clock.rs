@@ -75,6 +75,8 @@ pub(super) struct Clock {
     squares: f64,
     /// The number of rows in these steps: as many as steps, or more where several rows share a stamp.
     rows_of_steps: u64,
+    /// The rows of the first burst and the step behind it. A log may begin within a burst.
+    first_burst: (u64, f64),
     /// The number of rows behind the first one with the present stamp.
     sharing: u64,
     /// The shortest and the longest step, in ticks.
@@ -149,6 +151,7 @@ impl Clock {
             sum: 0.0,
             squares: 0.0,
             rows_of_steps: 0,
+            first_burst: (0, 0.0),
             sharing: 0,
             range: (f64::INFINITY, 0.0),
             block: (0, 0.0),
@@ -177,6 +180,11 @@ impl Clock {
             return Ok(Tick::Repeated);
         }
         let rows = 1 + std::mem::take(&mut self.sharing);
+        if self.is_clock_time(last, stamp) {
+            return Err(Flaw::stamps(format!(
+                "time stamps go from {last} to {stamp}, as hours, minutes and seconds in one number do"
+            )));
+        }
         self.end_delays(stamp, step);
         let is_long = step > self.pace.longest;
         let known = self.late.pop_if(|late| late.row == self.rows);
@@ -218,9 +226,22 @@ impl Clock {
             return Ok(Tick::Gap(lost));
         }
         self.gaps_in_a_row = 0;
+        if self.rows_of_steps == 0 && self.pace.rows > 1.0 {
+            self.first_burst = (rows, step);
+        }
         self.rows_of_steps += rows;
         self.step(step)?;
         Ok(Tick::Next)
+    }
+
+    /// Whether a minute begins between two stamps of the form HHMMSS, of which a minute has hundred and an hour ten thousand.
+    fn is_clock_time(&self, last: Stamp, stamp: Stamp) -> bool {
+        let [last_s, now_s] = [last, stamp].map(|one| self.seconds(one.since(Stamp::Whole(0))));
+        let skipped = now_s - last_s - self.pace.seconds(self.pace.step);
+        let is_skip = [40.0, 4040.0]
+            .iter()
+            .any(|skip| (skipped - skip).abs() < 0.5);
+        is_skip && last_s.rem_euclid(100.0) >= 59.0 && now_s.rem_euclid(100.0) < 1.0
     }
 
     /// A difference of stamps in seconds.
@@ -337,7 +358,12 @@ impl Clock {
                 "time stamps jump in {gaps} of {rows} rows: rows are missing, or stamps are too coarse"
             )));
         }
-        let rate_hz = self.rows_of_steps as f64 / self.pace.seconds(self.sum);
+        // With a few bursts, the first one would be a large part of all.
+        let (rows, step) = match self.steps {
+            0..3 => (0, 0.0),
+            _ => self.first_burst,
+        };
+        let rate_hz = (self.rows_of_steps - rows) as f64 / self.pace.seconds(self.sum - step);
         let rounded = format!("{rate_hz:.8e}").parse().unwrap_or(rate_hz);
         if (1e-6..=1e9).contains(&rounded) {
             Ok(rounded)

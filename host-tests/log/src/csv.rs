@@ -62,6 +62,7 @@ impl Csv {
                 names: preamble.names,
                 looks: Vec::new(),
                 heads: Vec::new(),
+                tags: Vec::new(),
                 defined: Vec::new(),
                 said: said(path, &preamble.said),
             },
@@ -82,6 +83,12 @@ impl Csv {
         let columns = 0..preamble.width;
         let columns = columns.map(|column| look(&rows, column));
         (table.columns.looks, table.columns.heads) = columns.unzip();
+        let looks = table.columns.looks.iter().enumerate();
+        let tags = looks.map(|(column, look)| match look {
+            Look::Text => tags(&rows, column),
+            _ => Vec::new(),
+        });
+        table.columns.tags = tags.collect();
         Ok(table)
     }
 
@@ -323,6 +330,13 @@ fn lost_samples(comment: &[u8]) -> Option<u64> {
     // Another number may be a time, so that it is not clear how many samples are lost.
     let is_clear = numbers.next().is_none() && words.iter().any(|word| text.contains(word));
     number.filter(|_| is_clear)
+}
+
+/// The texts of a column.
+fn tags(rows: &[ByteRecord], column: usize) -> Vec<String> {
+    let fields = rows.iter().filter_map(|row| row.get(column));
+    let text = |field: &[u8]| String::from_utf8_lossy(field.trim_ascii()).into_owned();
+    fields.map(text).collect()
 }
 
 fn number(row: &ByteRecord, column: usize) -> Option<f64> {

@@ -68,6 +68,21 @@ struct Header {
     _frame_id: String,
 }
 
+/// The frame of a message, which tells the sensors of one topic apart. `None` if the message cannot be decoded.
+pub(super) fn frame_of(bytes: &[u8], encoding: Encoding) -> Option<String> {
+    // Behind the sequence number, or the encapsulation, are two words of the stamp.
+    let is_big = encoding == Encoding::Cdr && bytes.get(1) == Some(&0);
+    let (length, rest) = bytes.get(12..)?.split_first_chunk::<4>()?;
+    let length = if is_big {
+        u32::from_be_bytes(*length)
+    } else {
+        u32::from_le_bytes(*length)
+    };
+    let frame = rest.get(..usize::try_from(length).ok()?)?;
+    let frame = frame.strip_suffix(b"\0").unwrap_or(frame);
+    Some(String::from_utf8_lossy(frame).into_owned())
+}
+
 impl ImuMessage {
     /// Decodes a message, or returns the reason why it cannot be decoded.
     pub(super) fn read(bytes: &[u8], encoding: Encoding) -> Result<Self, &'static str> {

@@ -146,6 +146,7 @@ mod rows;
 mod scaling;
 pub mod sizes;
 mod source;
+mod sources;
 mod spectrogram;
 mod sums;
 mod table;

@@ -70,6 +70,43 @@ pub(super) fn is_other(name: &str) -> bool {
         || is_angle(&name)
 }
 
+/// Whether a column is named like a number that tells sensors apart: `I`, `instance`, `SensorId`, `device_id`, `imu`.
+pub(super) fn is_source(name: &str) -> bool {
+    let name = name.trim().to_lowercase();
+    let plain: String = name.chars().filter(|c| c.is_alphanumeric()).collect();
+    let words = [
+        "i", "id", "instance", "sensor", "device", "imu", "channel", "source", "unit", "node",
+        "board", "port", "address",
+    ];
+    let things = [
+        "sensor", "device", "imu", "gyro", "node", "board", "source", "unit", "chip",
+    ];
+    let suffixes = ["id", "no", "nr", "number", "index", "idx"];
+    words.contains(&plain.as_str())
+        || suffixes.iter().any(|suffix| {
+            let thing = plain.strip_suffix(suffix);
+            thing.is_some_and(|thing| things.contains(&thing))
+        })
+}
+
+/// Whether a column is named like an increment of an angle since the sample before: `dtheta_x`, `delta_angle[0]`, `X_DELTANG`.
+pub(super) fn is_increment(name: &str) -> bool {
+    let name = name.trim().to_lowercase();
+    let plain: String = name.chars().filter(|c| c.is_alphanumeric()).collect();
+    [
+        "deltaangle",
+        "deltaang",
+        "deltang",
+        "dtheta",
+        "deltatheta",
+        "dangle",
+        "angleincrement",
+        "incrementofangle",
+    ]
+    .iter()
+    .any(|word| plain.contains(word))
+}
+
 /// Whether a column is named like a temperature: `temp_C`, `gyro.temperature`, `IMUTemp`, `t [°C]`.
 pub(super) fn is_temperature(name: &str) -> bool {
     let text = name.trim().to_lowercase();

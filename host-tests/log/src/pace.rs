@@ -48,6 +48,9 @@ impl Pace {
             .find(|&row| first[row] > first[row - 1]);
         let rows = last.unwrap_or(0) as f64 / steps.len().max(1) as f64;
         let rows = if rows > BURSTS { rows } else { 1.0 };
+        if let Some(even) = even(first, unit.per_second()) {
+            return Some(even);
+        }
         let usual = quantile(&mut steps, 0.5)?;
         let mut scatter: Vec<f64> = steps.iter().map(|step| (step - usual).abs()).collect();
         let scatter = quantile(&mut scatter, SCATTER.1)?;
@@ -151,6 +154,54 @@ pub(super) fn possible_units(first: &[f64]) -> Option<Vec<TimeUnit>> {
 fn steps(stamps: &[f64]) -> Vec<f64> {
     let steps = stamps.windows(2).map(|pair| pair[1] - pair[0]);
     steps.filter(|&step| step > 0.0).collect()
+}
+
+/// The pace of regular stamps that are cut to whole milliseconds or microseconds. Their steps take two values that differ by the
+/// resolution, and the rarer one comes as evenly as it can, so that the steps between two of them are equally many but for one.
+/// Samples that are lost leave no such order.
+fn even(first: &[f64], per_second: f64) -> Option<Pace> {
+    /// The resolutions of clocks, in seconds.
+    const RESOLUTIONS: [f64; 2] = [1e-3, 1e-6];
+    /// The rarer step is there so often at least.
+    const SEEN: usize = 3;
+    let steps: Vec<f64> = first.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let short = steps.iter().copied().fold(f64::INFINITY, f64::min);
+    let long = steps.iter().copied().fold(0.0, f64::max);
+    let resolution = long - short;
+    let is_near = |one: f64, other: f64| (one - other).abs() < 0.01 * resolution;
+    let is_known = RESOLUTIONS
+        .iter()
+        .any(|known| is_near(resolution, known * per_second));
+    let whole = (short / resolution).round();
+    let is_cut = short >= 0.0 && is_near(short, whole * resolution);
+    let is_either = |step: &f64| is_near(*step, short) || is_near(*step, long);
+    if !is_known || !is_cut || !steps.iter().all(is_either) {
+        return None;
+    }
+    let longs = steps.iter().filter(|step| is_near(**step, long)).count();
+    let rarer = if 2 * longs <= steps.len() {
+        long
+    } else {
+        short
+    };
+    let places = steps.iter().enumerate();
+    let places = places.filter(|(_, step)| is_near(**step, rarer));
+    let places: Vec<usize> = places.map(|(place, _)| place).collect();
+    let between: Vec<usize> = places.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let (fewest, most) = (between.iter().min()?, between.iter().max()?);
+    if places.len() < SEEN || most - fewest > 1 || *fewest < 2 {
+        return None;
+    }
+    let mean = steps.iter().sum::<f64>() / steps.len() as f64;
+    // Several rows share a stamp where the samples follow each other faster than the clock counts.
+    let rows = if whole == 0.0 { long / mean } else { 1.0 };
+    Some(Pace {
+        per_second,
+        step: mean * rows,
+        longest: long + 0.5 * resolution,
+        scatter: 0.5 * resolution,
+        rows,
+    })
 }
 
 /// The mean step of regular stamps that are rounded to a unit of a fifth to two thirds of it, and the longest step that is not

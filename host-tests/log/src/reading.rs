@@ -9,7 +9,7 @@ use super::{
     columns::AxisColumn,
     cuts::Dropped,
     evidence::{self, Recorded},
-    faults,
+    faults, names,
     scaling::{self, Origin, Scaling},
     table::Table,
     time_column::TimeColumn,
@@ -116,7 +116,10 @@ fn sampling(
     {
         table.columns().check_rate(path, options, rate_hz)?;
     }
-    table.columns().check_instances(path)?;
+    table.columns().check_sources(path)?;
+    if options.columns.is_none() {
+        table.columns().check_glued(path)?;
+    }
     // If the rate is given, time stamps are read only if the options ask for them.
     let time = match table.by_rows() && (rate_hz.is_none() || options.time.is_some()) {
         true => table.columns().time(path, options)?,
@@ -229,6 +232,16 @@ fn taken(
             "choose columns with --columns",
         ));
     }
+    let name = |axis: &AxisColumn| columns.name(axis.column).map(str::to_owned);
+    let mut names = taken.axes.iter().filter_map(name);
+    if options.scale.is_none()
+        && let Some(name) = names.find(|name| names::is_increment(name))
+    {
+        return Err(Place::file(path).failure(
+            format!("column {name} has increments of an angle, and no rates"),
+            "give as --scale the number of samples per second, by which they become rates, with --unit and the three --columns",
+        ));
+    }
     Ok(taken)
 }
 
@@ -253,6 +266,9 @@ fn said(
             "rad/s assumed, because the accelerometer beside it is in m/s² (change it with --unit)"
                 .into(),
         ),
+        Origin::Gravity => {
+            parts.push("g assumed, because gravity is 1 in it (change it with --unit)".into());
+        }
         Origin::Told | Origin::Assumed => {}
     }
     if let Some(time) = time {

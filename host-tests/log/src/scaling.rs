@@ -30,6 +30,8 @@ pub(super) enum Origin {
     Convention(&'static str),
     /// The unit is the one that goes with an accelerometer in m/s² beside the gyro.
     Beside,
+    /// The unit is that in which an accelerometer feels gravity as 1.
+    Gravity,
     /// The unit is assumed.
     Assumed,
 }
@@ -88,9 +90,16 @@ impl Scaling {
                 (convention.unit, Origin::Convention(convention.program))
             }
             (None, None, None) => {
-                match table.columns().is_in_si(axes) && fits(&Unit::RadiansPerSecond) {
-                    true if scale.is_none() => (Unit::RadiansPerSecond, Origin::Beside),
-                    _ => (usual, Origin::Assumed),
+                let columns = table.columns();
+                match () {
+                    () if scale.is_some() => (usual, Origin::Assumed),
+                    () if columns.is_in_si(axes) && fits(&Unit::RadiansPerSecond) => {
+                        (Unit::RadiansPerSecond, Origin::Beside)
+                    }
+                    () if columns.is_in_g(axes) && fits(&Unit::StandardGravity) => {
+                        (Unit::StandardGravity, Origin::Gravity)
+                    }
+                    () => (usual, Origin::Assumed),
                 }
             }
         };

@@ -135,6 +135,7 @@ impl Ulog {
             columns: Columns {
                 looks: vec![Look::Number; names.len()],
                 heads: vec![Vec::new(); names.len()],
+                tags: Vec::new(),
                 defined: defined(&chosen.subscription.topic, &names),
                 said: String::new(),
                 names: Some(names),

@@ -6,7 +6,7 @@ use ::arrow::{
     array::RecordBatch,
     compute::cast,
     csv::WriterBuilder,
-    datatypes::DataType,
+    datatypes::{DataType, TimeUnit},
     error::ArrowError,
     ipc::reader::{FileReader, StreamReader},
 };
@@ -76,17 +76,35 @@ pub(super) fn convert(
 
 /// The columns that a text has room for, with stamps in nanoseconds and without time zones.
 fn columns(batch: &RecordBatch) -> Result<RecordBatch, ArrowError> {
-    use ::arrow::datatypes::TimeUnit::Nanosecond;
     let batch = batch.normalize(".", None)?;
     let schema = batch.schema();
     let mut kept = Vec::new();
     for (field, column) in schema.fields().iter().zip(batch.columns()) {
-        let name = field.name().clone();
-        match field.data_type() {
+        let mut name = field.name().clone();
+        // A dictionary and runs are ways of storing values, which are columns as any others.
+        let column = match field.data_type() {
+            DataType::Dictionary(_, values) => &cast(column, values)?,
+            DataType::RunEndEncoded(_, values) => &cast(column, values.data_type())?,
+            _ => column,
+        };
+        match column.data_type() {
             DataType::Timestamp(_, _) => {
-                kept.push((name, cast(column, &DataType::Timestamp(Nanosecond, None))?));
+                kept.push((
+                    name,
+                    cast(column, &DataType::Timestamp(TimeUnit::Nanosecond, None))?,
+                ));
             }
-            DataType::Duration(_) => kept.push((name, cast(column, &DataType::Int64)?)),
+            DataType::Duration(unit) => {
+                if !name.contains('[') {
+                    name += match unit {
+                        TimeUnit::Second => " [s]",
+                        TimeUnit::Millisecond => " [ms]",
+                        TimeUnit::Microsecond => " [us]",
+                        TimeUnit::Nanosecond => " [ns]",
+                    };
+                }
+                kept.push((name, cast(column, &DataType::Int64)?));
+            }
             // The shortest text of a short float reads back as another long one.
             DataType::Float16 | DataType::Float32 => {
                 kept.push((name, cast(column, &DataType::Float64)?));

@@ -162,7 +162,7 @@ fn rows_of_several_sensors_are_not_mixed() {
     let line = read_text(&format!("TimeUS,I,GyrX\n{lines}"), &Options::default()).unwrap_err();
     assert_eq!(
         line,
-        "a.csv: the rows are those of 2 sensors, by column I; \
-         keep one of them, such as with `awk -F, 'NR == 1 || $2 == 0'`"
+        "a.csv: the rows are those of 2 sensors, by column I: \"0\", \"1\"; \
+         keep the rows of one of them, such as those that have \"0\" there"
     );
 }

@@ -1,0 +1,93 @@
+//! Rows of several sensors in one table, and values with other characters around them.
+
+use super::{
+    columns::{Columns, Look},
+    names,
+};
+use crate::failure::{Failure, Place, quoted};
+use std::path::Path;
+
+/// The most sensors whose rows are recognised in one table. More values are those of a quantity. Chosen by hand.
+const MOST: usize = 8;
+
+/// Rows change from one sensor to another at least so often among the first ones. A label of what is done changes less often.
+/// Chosen by hand.
+const CHANGES: usize = 4;
+
+impl Columns {
+    /// Checks that the rows are those of one sensor: no column of names or of numbers of sensors changes to and fro.
+    ///
+    /// # Errors
+    /// When the first rows are those of several sensors.
+    pub(super) fn check_sources(&self, path: &Path) -> Result<(), Failure> {
+        for column in 0..self.looks.len() {
+            let rows = self.marks(column);
+            let mut marks = rows.clone();
+            marks.sort_unstable();
+            marks.dedup();
+            let changes = rows.windows(2).filter(|pair| pair[0] != pair[1]).count();
+            let is_mixed = (2..=MOST).contains(&marks.len())
+                && changes >= CHANGES
+                && 2 * marks.len() <= rows.len();
+            if !is_mixed {
+                continue;
+            }
+            let shown: Vec<String> = marks.iter().map(|mark| quoted(mark.as_bytes())).collect();
+            let called = match self.name(column) {
+                Some(name) => format!("column {name}"),
+                None => self.called(column),
+            };
+            return Err(Place::file(path).failure(
+                format!(
+                    "the rows are those of {} sensors, by {called}: {}",
+                    marks.len(),
+                    shown.join(", ")
+                ),
+                format!(
+                    "keep the rows of one of them, such as those that have {} there",
+                    shown[0]
+                ),
+            ));
+        }
+        Ok(())
+    }
+
+    /// The marks of a column that may tell sensors apart, of each of the first rows.
+    fn marks(&self, column: usize) -> Vec<String> {
+        let numbers = &self.heads[column];
+        let is_whole = numbers.iter().all(|number| number.fract() == 0.0);
+        match self.looks[column] {
+            Look::Text => self.tags.get(column).cloned().unwrap_or_default(),
+            Look::Number if is_whole && self.name(column).is_some_and(names::is_source) => {
+                numbers.iter().map(f64::to_string).collect()
+            }
+            _ => Vec::new(),
+        }
+    }
+
+    /// Checks that no column of numbers has brackets or the like around its values, by which it would be lost.
+    ///
+    /// # Errors
+    /// When the first values of a column are such numbers.
+    pub(super) fn check_glued(&self, path: &Path) -> Result<(), Failure> {
+        for (column, tags) in self.tags.iter().enumerate() {
+            let is_glued = |tag: &String| {
+                let bare = tag.trim_matches(|one| "[](){};".contains(one));
+                bare.len() < tag.len() && bare.trim().parse::<f64>().is_ok()
+            };
+            if let Some(first) = tags.first()
+                && tags.iter().all(is_glued)
+            {
+                return Err(Place::file(path).failure(
+                    format!(
+                        "the values of {} have other characters around them, such as {}",
+                        self.called(column),
+                        quoted(first.as_bytes())
+                    ),
+                    "remove them, such as with `tr -d '[](){};'`",
+                ));
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,304 @@
+//! Rows of several sensors, columns that are no rates, and stamps of a coarse clock: told, and not read as something else.
+
+use super::{read_text, try_read};
+use allanite::Accumulator;
+use allanite_log::{Log, OCTAVES, Options, TimeUnit, unit::Unit};
+use rand::{RngExt as _, SeedableRng as _};
+use rand_distr::{Distribution as _, StandardNormal};
+use rand_xoshiro::Xoshiro256PlusPlus;
+use std::{fmt::Write as _, fs, sync::Arc};
+use tempfile::TempDir;
+
+/// White noise with six decimals.
+fn noise(random: &mut Xoshiro256PlusPlus) -> String {
+    let value: f64 = StandardNormal.sample(random);
+    format!("{:.6}", 0.05 * value)
+}
+
+fn refused(text: &str) -> String {
+    read_text(text, &Options::default()).unwrap_err()
+}
+
+#[test]
+fn rows_of_sensors_that_a_column_names_are_not_one_gyro_of_twice_the_rate() {
+    let mut random = Xoshiro256PlusPlus::seed_from_u64(1);
+    for (header, names) in [
+        ("SensorId,time_s,gx,gy,gz", ["1", "2"]),
+        ("device_id,time_s,gx,gy,gz", ["7", "9"]),
+        ("imu,time_s,gx,gy,gz", ["0", "1"]),
+        ("sensor,time_s,x,y,z", ["ACC", "GYR"]),
+        ("frame_id,time_s,gx,gy,gz", ["left", "right"]),
+        ("Name,time_s,gx,gy,gz", ["imu_a", "imu_b"]),
+    ] {
+        // One after the other, in blocks, and at random.
+        for order in 0..3 {
+            let mut text = format!("{header}\n");
+            for n in 0..120 {
+                let which = match order {
+                    0 => n % 2,
+                    1 => n / 5 % 2,
+                    _ => random.random_range(0..2),
+                };
+                let [x, y, z] = [(); 3].map(|()| noise(&mut random));
+                writeln!(
+                    text,
+                    "{},{:.2},{x},{y},{z}",
+                    names[which],
+                    f64::from(n as u32 / 2) / 100.0
+                )
+                .unwrap();
+            }
+            let line = refused(&text);
+            let (name, _) = header.split_once(',').unwrap();
+            let [one, other] = names;
+            let expected = format!(
+                "a.csv: the rows are those of 2 sensors, by column {name}: \"{one}\", \"{other}\"; \
+                 keep the rows of one of them, such as those that have \"{one}\" there"
+            );
+            assert_eq!(line, expected);
+        }
+    }
+}
+
+#[test]
+fn labels_of_what_is_done_and_numbers_that_stay_are_no_sensors() {
+    let mut random = Xoshiro256PlusPlus::seed_from_u64(2);
+    for header in ["label,time_s,gx", "device_id,time_s,gx", "status,time_s,gx"] {
+        let mut text = format!("{header}\n");
+        for n in 0..200 {
+            let mark = match header.split(',').next() {
+                Some("label") => ["rest", "walk"][n / 150],
+                Some("device_id") => "3",
+                _ => ["0", "1"][n % 2],
+            };
+            writeln!(
+                text,
+                "{mark},{:.2},{}",
+                n as f64 / 100.0,
+                noise(&mut random)
+            )
+            .unwrap();
+        }
+        let log = read_text(&text, &Options::default()).unwrap();
+        assert_eq!(log.rate_hz, 100.0, "{header}");
+    }
+}
+
+#[test]
+fn values_within_brackets_are_not_lost() {
+    let mut random = Xoshiro256PlusPlus::seed_from_u64(3);
+    let mut rows = |pattern: &str| -> String {
+        (0..60)
+            .map(|_| {
+                let [x, y, z] = [(); 3].map(|()| noise(&mut random));
+                pattern.replace('x', &x).replace('y', &y).replace('z', &z) + "\n"
+            })
+            .collect()
+    };
+    for (pattern, column) in [
+        ("[x, y, z]", "column 1"),
+        ("x,y,z;", "column 3"),
+        ("(x;y;z)", "column 1"),
+    ] {
+        let options = Options {
+            rate_hz: Some(100.0),
+            ..Options::default()
+        };
+        let line = read_text(&rows(pattern), &options).unwrap_err();
+        let expected =
+            format!("a.csv: the values of {column} have other characters around them, such as ");
+        assert!(line.starts_with(&expected), "{pattern}: {line}");
+    }
+}
+
+#[test]
+fn increments_of_an_angle_are_no_rates_until_they_are_scaled() {
+    let mut random = Xoshiro256PlusPlus::seed_from_u64(4);
+    for header in [
+        "time_s,dtheta_x (rad),dtheta_y (rad),dtheta_z (rad)",
+        "time_s,X_DELTANG,Y_DELTANG,Z_DELTANG",
+        "time_s,delta_angle[0],delta_angle[1],delta_angle[2]",
+        "time_s,DeltaAngle_x (rad),DeltaAngle_y (rad),DeltaAngle_z (rad)",
+    ] {
+        let mut text = format!("{header}\n");
+        for n in 0..100 {
+            let [x, y, z] = [(); 3].map(|()| noise(&mut random));
+            writeln!(text, "{:.2},{x},{y},{z}", f64::from(n) / 100.0).unwrap();
+        }
+        let line = refused(&text);
+        assert!(
+            line.contains("has increments of an angle, and no rates; give as --scale"),
+            "{line}"
+        );
+        let scaled = Options {
+            scale: Some(100.0),
+            unit: Some(Unit::RadiansPerSecond),
+            ..Options::default()
+        };
+        let log = read_text(&text, &scaled).unwrap();
+        assert_eq!((log.axes.len(), log.rate_hz), (3, 100.0));
+    }
+}
+
+/// The samples and the rate of a log whose stamps are cut to whole milliseconds.
+fn cut_to_milliseconds(rate_hz: f64, phase: f64, rows: u32) -> Log {
+    let mut random = Xoshiro256PlusPlus::seed_from_u64(5);
+    let mut text = String::from("millis,gx\n");
+    for n in 0..rows {
+        let stamp = (1000.0 * f64::from(n) / rate_hz + phase).floor();
+        writeln!(text, "{stamp},{}", noise(&mut random)).unwrap();
+    }
+    let options = Options {
+        time_unit: Some(TimeUnit::Ms),
+        ..Options::default()
+    };
+    read_text(&text, &options).unwrap_or_else(|line| panic!("{rate_hz}: {line}"))
+}
+
+#[test]
+fn whole_milliseconds_lose_no_sample_of_a_sensor_with_another_rate() {
+    for rate_hz in [
+        562.5, 640.0, 667.0, 833.0, 909.0, 952.0, 960.0, 1040.0, 1100.0, 1125.0,
+    ] {
+        for phase in [0.0, 0.37, 0.81] {
+            let log = cut_to_milliseconds(rate_hz, phase, 4000);
+            assert!(
+                (log.rate_hz / rate_hz - 1.0).abs() < 1e-3,
+                "{rate_hz}: {}",
+                log.rate_hz
+            );
+            let accumulator: &Accumulator<OCTAVES> = &log.axes[0].accumulator;
+            assert_eq!(
+                (accumulator.samples(), accumulator.gaps()),
+                (4000, 0),
+                "{rate_hz}"
+            );
+            assert!(accumulator.bridged().is_empty(), "{rate_hz}");
+        }
+    }
+}
+
+#[test]
+fn samples_that_are_lost_at_random_are_still_lost() {
+    let mut random = Xoshiro256PlusPlus::seed_from_u64(6);
+    let mut text = String::from("millis,gx\n");
+    let mut rows = 0;
+    for n in 0..4000 {
+        if random.random_range(0..20) > 0 {
+            writeln!(text, "{n},{}", noise(&mut random)).unwrap();
+            rows += 1;
+        }
+    }
+    let log = read_text(
+        &text,
+        &Options {
+            time_unit: Some(TimeUnit::Ms),
+            ..Options::default()
+        },
+    );
+    let log = log.unwrap();
+    assert_eq!(
+        (log.rate_hz, log.axes[0].accumulator.samples()),
+        (1000.0, rows)
+    );
+    assert!(!log.axes[0].accumulator.bridged().is_empty());
+}
+
+#[test]
+fn a_log_that_begins_within_a_second_has_the_rate_of_its_whole_seconds() {
+    let mut random = Xoshiro256PlusPlus::seed_from_u64(7);
+    for (first, rate) in [(37, 100), (3, 50), (90, 95)] {
+        let mut text = String::from("timestamp,gx\n");
+        for n in 0..8 * rate {
+            let second = 1_700_000_000 + (n + rate - first) / rate;
+            writeln!(text, "{second},{}", noise(&mut random)).unwrap();
+        }
+        let log = read_text(&text, &Options::default()).unwrap();
+        assert_eq!(log.rate_hz, f64::from(rate));
+    }
+}
+
+#[test]
+fn hours_minutes_and_seconds_in_one_number_are_told() {
+    let mut random = Xoshiro256PlusPlus::seed_from_u64(8);
+    let mut text = String::from("utc_time,gx\n");
+    for n in 0..2000_u32 {
+        let (minute, second) = (
+            59 + n / 1000,
+            f64::from(n % 1000) / 50.0 + 40.0 * f64::from(n < 1000),
+        );
+        let hour = 12 + minute / 60;
+        writeln!(
+            text,
+            "{:02}{:02}{second:06.3},{}",
+            hour,
+            minute % 60,
+            noise(&mut random)
+        )
+        .unwrap();
+    }
+    let line = refused(&text);
+    assert!(
+        line.contains("as hours, minutes and seconds in one number do; "),
+        "{line}"
+    );
+}
+
+#[test]
+fn an_accelerometer_that_feels_one_unit_of_gravity_is_in_g() {
+    let mut random = Xoshiro256PlusPlus::seed_from_u64(9);
+    for (gravity, unit) in [
+        (1.0, Unit::StandardGravity),
+        (9.81, Unit::MetresPerSecondSquared),
+    ] {
+        let mut text = String::from("time_s,ax,ay,az\n");
+        for n in 0..200 {
+            let [x, y, z] = [0.0, 0.0, gravity].map(|mean| {
+                let value: f64 = StandardNormal.sample(&mut random);
+                mean + 0.002 * value
+            });
+            writeln!(text, "{:.2},{x:.5},{y:.5},{z:.5}", f64::from(n) / 100.0).unwrap();
+        }
+        let log = read_text(&text, &Options::default()).unwrap();
+        assert_eq!(log.unit, unit);
+    }
+}
+
+#[test]
+fn an_axis_as_a_dictionary_and_a_time_as_a_duration_are_read() {
+    use arrow::{
+        array::{
+            ArrayRef, DictionaryArray, DurationMillisecondArray, Float64Array, Int32Array,
+            RecordBatch,
+        },
+        datatypes::Int32Type,
+        ipc::writer::FileWriter,
+    };
+    let mut random = Xoshiro256PlusPlus::seed_from_u64(10);
+    let mut values = || -> Vec<f64> {
+        let draw = |_| StandardNormal.sample(&mut random);
+        (0..200).map(draw).collect::<Vec<f64>>()
+    };
+    let keys = Int32Array::from_iter_values((0..200).map(|n| n * 7 % 200));
+    let x = DictionaryArray::<Int32Type>::new(keys, Arc::new(Float64Array::from(values())));
+    let time = DurationMillisecondArray::from_iter_values((0..200).map(|n| 5 * n));
+    let batch = RecordBatch::try_from_iter([
+        ("time", Arc::new(time) as ArrayRef),
+        ("gyro_x", Arc::new(x)),
+        ("gyro_y", Arc::new(Float64Array::from(values()))),
+        ("gyro_z", Arc::new(Float64Array::from(values()))),
+    ])
+    .unwrap();
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join("a.arrow");
+    let mut writer =
+        FileWriter::try_new(fs::File::create(&path).unwrap(), &batch.schema()).unwrap();
+    writer.write(&batch).unwrap();
+    writer.finish().unwrap();
+    let log = try_read(&path, &Options::default()).unwrap();
+    let names: Vec<&str> = log.axes.iter().map(|axis| axis.name.as_str()).collect();
+    assert_eq!(
+        (names.as_slice(), log.rate_hz),
+        (&["gyro_x", "gyro_y", "gyro_z"][..], 200.0)
+    );
+}

@@ -159,7 +159,7 @@ impl Columns {
 
     /// Whether these are three axes of an accelerometer that feel 0.95 to 1.05 units of gravity: then their unit is g.
     pub(super) fn is_in_g(&self, axes: &[AxisColumn]) -> bool {
-        let &[ref x, ref y, ref z] = axes else {
+        let [x, y, z] = axes else {
             return false;
         };
         let is_accelerometer = self.sensor_of(axes) == Some(Sensor::Accelerometer);

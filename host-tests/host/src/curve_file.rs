@@ -4,6 +4,7 @@
 //! follow. The whole file is checked before any number of it is used.
 
 mod check;
+mod coarse;
 mod course;
 mod levels;
 mod merge;
@@ -13,7 +14,6 @@ pub use course::CourseDensities;
 use levels::TOLERANCE;
 pub use levels::{SpectrumLevel, SpectrumLevels};
 
-use crate::rounding;
 use allanite::{
     Curve, Scale, course::CosineTransform, integrity::Reason, octave::Bridged, spectrum::Spectrum,
 };
@@ -215,7 +215,7 @@ impl CurveFile {
         file.version = VERSION;
         for axis in &mut file.axes {
             if !is_judged {
-                axis.invalid = rounding::coarse(axis);
+                axis.invalid = axis.coarse();
             }
             // Names are printed, and control characters would reach the terminal.
             axis.axis = one_line(&axis.axis);

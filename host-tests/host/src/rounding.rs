@@ -4,26 +4,11 @@ use crate::{curve_file::AxisCurve, number::number, words};
 use allanite::{
     effect::{AngleRandomWalk, Effect},
     fit::{Fit, State},
-    integrity::{Limits, Reason},
 };
 
 /// The smallest excess of angle random walk that is worth a note, in percent. Chosen by hand: rounding
 /// exceeds it at a noise of two counts rms or less.
 const LEAST_PERCENT: f64 = 1.0;
-
-/// Why a curve is not valid whose noise is below half a count, so that the result of a fit follows from the constant offset: the mean
-/// square of the differences of neighbours. This is for curves of which nothing else is known. Pulses of an angle are as
-/// small, and the samples of three axes show what they are.
-pub(crate) fn coarse(axis: &AxisCurve) -> Option<Reason> {
-    let square = axis.rate_per_count * axis.rate_per_count;
-    // A difference of neighbours has twice their Allan variance.
-    let first = axis.octaves.first().filter(|octave| octave.m == 1)?;
-    let per_mille = 1000.0 * 2.0 * first.variance / square;
-    let is_coarse = per_mille < f64::from(Limits::DEFAULT.difference_per_mille);
-    is_coarse.then_some(Reason::Coarse {
-        per_mille: per_mille as u16,
-    })
-}
 
 /// A note on the share of rounding in an axis, or `None` if there is nothing to tell.
 ///

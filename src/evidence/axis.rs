@@ -42,7 +42,7 @@ pub struct AxisRecord<const OCTAVES: usize, const COVARIATES: usize = 0, D = Spe
     pub scale: Scale,
     /// The Allan curve.
     pub curve: Curve<OCTAVES>,
-    /// The [mean rate](Accumulator::mean_rate), in rate units.
+    /// The [mean rate](crate::Accumulator::mean_rate), in rate units.
     pub mean_rate: Option<Real>,
     /// The power spectral densities; without bins if no spectrum is kept.
     pub spectrum: D,

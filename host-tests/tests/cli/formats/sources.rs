@@ -265,11 +265,11 @@ fn an_accelerometer_that_feels_one_unit_of_gravity_is_in_g() {
 }
 
 #[test]
-fn an_axis_as_a_dictionary_and_a_time_as_a_duration_are_read() {
+fn axes_as_a_dictionary_and_as_runs_and_a_time_as_a_duration_are_read() {
     use arrow::{
         array::{
             ArrayRef, DictionaryArray, DurationMillisecondArray, Float64Array, Int32Array,
-            RecordBatch,
+            RecordBatch, RunArray,
         },
         datatypes::Int32Type,
         ipc::writer::FileWriter,
@@ -281,11 +281,15 @@ fn an_axis_as_a_dictionary_and_a_time_as_a_duration_are_read() {
     };
     let keys = Int32Array::from_iter_values((0..200).map(|n| n * 7 % 200));
     let x = DictionaryArray::<Int32Type>::new(keys, Arc::new(Float64Array::from(values())));
+    // Runs of one to three equal values.
+    let ends = (0..100).map(|n| 2 * n + 1 + n % 2);
+    let levels = Float64Array::from_iter_values(values().into_iter().take(100));
+    let y = RunArray::try_new(&Int32Array::from_iter_values(ends), &levels).unwrap();
     let time = DurationMillisecondArray::from_iter_values((0..200).map(|n| 5 * n));
     let batch = RecordBatch::try_from_iter([
         ("time", Arc::new(time) as ArrayRef),
         ("gyro_x", Arc::new(x)),
-        ("gyro_y", Arc::new(Float64Array::from(values()))),
+        ("gyro_y", Arc::new(y)),
         ("gyro_z", Arc::new(Float64Array::from(values()))),
     ])
     .unwrap();

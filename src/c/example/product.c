@@ -33,8 +33,8 @@ static int32_t noise(void) {
 }
 
 static void sample(uint32_t n, int32_t counts[3], int32_t *temperature) {
-    sine -= cosine / 16;
-    cosine += sine / 16;
+    sine -= cosine * 3 / 4;
+    cosine += sine * 3 / 4;
     *temperature = 2500 + (int32_t)(n / 256);
     counts[0] = noise() + sine / 64 + *temperature / 8;
     counts[1] = noise() + (n == 5000u ? 20000 : 0);

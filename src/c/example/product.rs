@@ -44,8 +44,8 @@ impl Sensor {
     }
 
     fn sample(&mut self, n: u32) -> ([i32; 3], i32) {
-        self.sine -= self.cosine / 16;
-        self.cosine += self.sine / 16;
+        self.sine -= self.cosine * 3 / 4;
+        self.cosine += self.sine * 3 / 4;
         let temperature = 2500 + (n / 256) as i32;
         let x = self.noise() + self.sine / 64 + temperature / 8;
         let y = self.noise() + if n == 5000 { 20_000 } else { 0 };

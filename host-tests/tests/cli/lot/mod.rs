@@ -53,12 +53,24 @@ fn decisions_agree_with_the_truth(lot: &Value, limits: [f64; 3]) {
     let (mut false_passes, mut false_failures, mut expected) = (0, 0, 0.0);
     for (i, (effect, limit)) in effects.into_iter().zip(limits).enumerate() {
         let row = row(lot, effect);
-        let [passed, guarded, failed] = ["passed", "guarded", "failed"].map(|key| count(&row[key]));
-        assert_eq!(passed + guarded + failed, DEVICES as usize, "{row}");
+        let [passed, guarded, failed, misfit] =
+            ["passed", "guarded", "failed", "misfit"].map(|key| count(&row[key]));
+        assert_eq!(
+            passed + guarded + failed + misfit,
+            DEVICES as usize,
+            "{row}"
+        );
+        // No model explains a few records by chance.
+        assert!(misfit * 50 <= DEVICES as usize, "{row}");
         assert!((number(&row["limit"]) / limit - 1.0).abs() < 1e-9, "{row}");
         let failures = devices(&lot["failures"], effect);
         let undecided = devices(&lot["undecided"], effect);
         assert_eq!((failures.len(), undecided.len()), (failed, guarded));
+        let unexplained = lot["unexplained"].as_array().unwrap().iter();
+        let unexplained: BTreeSet<String> = unexplained
+            .map(|one| one["device"].as_str().unwrap().to_owned())
+            .collect();
+        assert_eq!(unexplained.len(), misfit);
         let is_good = |device: u64| {
             let Coefficients {
                 quantization,
@@ -71,7 +83,7 @@ fn decisions_agree_with_the_truth(lot: &Value, limits: [f64; 3]) {
         let good = named(0..DEVICES, is_good);
         let bad = named(0..DEVICES, |device| !is_good(device));
         false_failures += failures.intersection(&good).count();
-        let not_passed = &failures | &undecided;
+        let not_passed = &(&failures | &undecided) | &unexplained;
         false_passes += bad.difference(&not_passed).count();
         expected += number(&row["expected_false_passes"]);
         expected += number(&row["expected_false_failures"]);
@@ -87,8 +99,9 @@ fn decisions_agree_with_the_truth(lot: &Value, limits: [f64; 3]) {
     for key in ["passed", "guarded", "failed"] {
         assert!(count(&white[key]) > 20, "{white}");
     }
-    let [passed, guarded, failed] = ["passed", "guarded", "failed"].map(|key| count(&lot[key]));
-    assert_eq!(passed + guarded + failed, DEVICES as usize);
+    let counts = ["passed", "guarded", "failed", "misfit"].map(|key| count(&lot[key]));
+    assert_eq!(counts.iter().sum::<usize>(), DEVICES as usize);
+    let [passed, ..] = counts;
     let share = number(&lot["yield_share"]);
     assert!((share - passed as f64 / DEVICES as f64).abs() < 1e-12);
     let [low, high] = [0, 1].map(|i| number(&lot["yield_interval"][i]));

@@ -51,8 +51,16 @@ impl Canvas {
         }
     }
 
-    /// Draws a line of dots.
+    /// Draws a line of dots. A place that is not a number has none, and one far outside is taken for one just outside.
     pub(super) fn line(&mut self, from: (f64, f64), to: (f64, f64)) {
+        let near = |(across, up): (f64, f64)| (across.clamp(-1.0, 2.0), up.clamp(-1.0, 2.0));
+        let (from, to) = (near(from), near(to));
+        if [from.0, from.1, to.0, to.1]
+            .iter()
+            .any(|share| share.is_nan())
+        {
+            return;
+        }
         let (wide, high) = (2 * self.columns, 4 * self.rows);
         let steps = ((to.0 - from.0).abs() * wide as f64).max((to.1 - from.1).abs() * high as f64);
         let steps = steps.ceil().max(1.0) as usize;
@@ -84,6 +92,16 @@ fn place(share: f64, places: usize) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn lines_to_places_that_are_far_outside_or_no_numbers_end() {
+        let mut canvas = Canvas::new(4, 2);
+        for far in [f64::INFINITY, f64::NEG_INFINITY, f64::NAN, 1e300, -1e12] {
+            canvas.line((0.0, 0.5), (1.0, far));
+            canvas.line((0.0, far), (far, 0.5));
+        }
+        assert_eq!(canvas.rows().count(), 2);
+    }
 
     #[test]
     fn line_from_corner_to_corner_is_a_diagonal_of_dots_under_marks() {

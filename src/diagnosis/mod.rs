@@ -8,6 +8,7 @@ mod alternative;
 mod assessment;
 mod correction;
 mod covariate_regression;
+mod dependence;
 mod extended;
 mod falling;
 mod mirror;
@@ -24,6 +25,7 @@ mod verdict;
 mod width;
 
 pub use alternative::alternative;
+pub use dependence::Dependence;
 pub use options::Options;
 pub use run::{Diagnosis, Progress};
 pub use shapes::fit_shapes;

@@ -10,7 +10,7 @@ pub use crate::{
 
 use super::{
     course::CosineTransform,
-    covariate::CrossCurve,
+    covariate::{CrossCurve, Pair},
     kurtosis::Kurtosis,
     motion::{self, Slowness},
     record::Record,
@@ -18,6 +18,7 @@ use super::{
 use crate::{
     curve::{Curve, Scale},
     error::Error,
+    list::numbered,
     numerics::real::Real,
     record::{
         axis::{
@@ -53,6 +54,8 @@ pub struct AxisRecord<const OCTAVES: usize, const COVARIATES: usize = 0, D = Spe
     pub kurtosis: Option<Kurtosis<OCTAVES>>,
     /// What the axis has in common with each covariate.
     pub covariates: Vec<CrossCurve<OCTAVES>, COVARIATES>,
+    /// The pairs of neighbouring covariates, which may act together.
+    pub pairs: Vec<Pair<OCTAVES>, COVARIATES>,
     /// The reason why the curve is not valid; `None` if it is valid.
     pub invalid: Option<Reason>,
 }
@@ -67,7 +70,7 @@ impl<'a, const OCTAVES: usize, const COVARIATES: usize, const B: usize>
             course: record.course.as_ref(),
             kurtosis: record.kurtosis.as_ref(),
             covariates: &record.covariates,
-            pairs: &[],
+            pairs: &record.pairs,
             invalid: record.invalid,
         }
     }
@@ -141,6 +144,7 @@ where
             // The vector has room for every covariate.
             let _ = covariates.push(cross);
         }
+        let pairs = self.pairs(scale, per_count)?;
         let moments = sums.moments.moments();
         Ok(AxisRecord {
             samples: sums.accumulator.samples(),
@@ -154,8 +158,33 @@ where
                 .and_then(|course| course.cosine_transform(scale)),
             kurtosis: moments.map(|moments| moments.kurtosis(&sums.accumulator)),
             covariates,
+            pairs,
             invalid: self.verdict(axis).or_else(|| self.motion(scale)),
         })
+    }
+
+    /// What neighbouring covariates have in common.
+    fn pairs(
+        &self,
+        scale: Scale,
+        per_count: [Real; COVARIATES],
+    ) -> Result<Vec<Pair<OCTAVES>, COVARIATES>, Error> {
+        let mut pairs = Vec::new();
+        let neighbours = self.kept.covariates.windows(2).zip(per_count.windows(2));
+        let neighbours = neighbours.zip(self.kept.between.iter().skip(1));
+        for (place, ((covariates, units), products)) in numbered(neighbours) {
+            let ([one, other], &[unit, other_unit]) = (covariates, units) else {
+                continue;
+            };
+            let own = Scale::new(unit, scale.rate_hz())?;
+            let shared = CrossCurve::new(one, other, products, own, other_unit)?;
+            // There is room for every covariate.
+            let _ = pairs.push(Pair {
+                covariates: [place, place.saturating_add(1)],
+                shared,
+            });
+        }
+        Ok(pairs)
     }
 
     /// Motion that never stopped, which the curves of all axes show together.

@@ -27,6 +27,7 @@
 mod pair;
 mod scatter;
 
+pub use crate::record::lags::Lags;
 pub use pair::Pair;
 pub(crate) use pair::Slopes;
 

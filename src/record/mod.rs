@@ -10,6 +10,7 @@ pub(crate) mod cross_sums;
 pub(crate) mod faults;
 pub(crate) mod fourth_moments;
 pub mod integrity;
+pub(crate) mod lags;
 pub mod octave;
 pub mod queue;
 pub(crate) mod reads;

@@ -8,7 +8,7 @@
 //! | content | type |
 //! |---|---|
 //! | number of octaves, axes, covariates, self-tests | 4 × u8 |
-//! | parts: 1 for a gate, plus 2 for fourth moments, plus 4 for the course, plus 8 for the reads, plus 16 for the sums | u8 |
+//! | parts: 1 for a gate, plus 2 for fourth moments, plus 4 for the course, plus 8 for the reads, plus 16 for the sums, plus 32 for neighbours | u8 |
 //! | spectrum: number of blocks of a segment, number of levels; zeros without one | u16, u8 |
 //! | samples; gaps, including one at the end of the snapshot | 2 × u64 |
 //! | for each octave `m = 1, 2, 4, …`: number of differences, the same for all axes and covariates | u64 |
@@ -23,6 +23,7 @@
 //! | and with the course: its blocks, as `course::stored` says | |
 //! | with reads, which earlier snapshots lack: the structure `reads::stored::Stored` | |
 //! | with sums, which earlier snapshots lack: the sum of all counts and filled values of each axis, then of each covariate; −2^63 if it is not known | i64 |
+//! | with neighbours, of two covariates or more: for each covariate but the first, each octave: Σ D D' with the one before | i64, i128 |
 //! | losses | u64 |
 //! | with a gate: samples left out, then for each axis the integrity of all samples | u64, … |
 //! | for each self-test: plan, next look, limits kept, verdict | |
@@ -58,6 +59,9 @@ const WITH_READS: u8 = 8;
 
 /// The bit of the parts that says that the sums of the counts follow.
 const WITH_SUMS: u8 = 16;
+
+/// The bit of the parts that says that the products of neighbouring covariates follow.
+const WITH_NEIGHBOURS: u8 = 32;
 
 /// The largest number of bytes that the integrity of an axis takes.
 const INTEGRITY: usize = 520;
@@ -106,7 +110,9 @@ where
     pub const fn snapshot_bytes(self_tests: usize) -> usize {
         let sums = OCTAVES * 3 * LONGEST;
         let moments = if Self::HAS_MOMENTS { sums } else { 0 };
-        let products = COVARIATES * OCTAVES * (LONGEST + LONGEST_128);
+        let product = OCTAVES * (LONGEST + LONGEST_128);
+        let products = COVARIATES * product;
+        let neighbours = COVARIATES.saturating_sub(1) * product;
         let seen = if Self::HAS_GATE { INTEGRITY } else { 0 };
         let spectrum = <S::Sums as SpectrumSums>::LONGEST;
         let course = if Self::HAS_COURSE {
@@ -118,7 +124,8 @@ where
         let head =
             Reads::<AXES>::LONGEST_STORED + 5 + 4 + (4 + OCTAVES) * LONGEST + LONGEST_BRIDGED;
         let counts = (AXES + COVARIATES) * LONGEST;
-        head + counts + AXES * axis + COVARIATES * sums + self_tests * self_test::LONGEST + OVERHEAD
+        let covariates = COVARIATES * sums + neighbours;
+        head + counts + AXES * axis + covariates + self_tests * self_test::LONGEST + OVERHEAD
     }
 
     fn parts(self_tests: usize) -> Parts {
@@ -131,7 +138,8 @@ where
                 + 2 * u8::from(Self::HAS_MOMENTS)
                 + 4 * u8::from(Self::HAS_COURSE)
                 + WITH_READS
-                + WITH_SUMS,
+                + WITH_SUMS
+                + WITH_NEIGHBOURS * u8::from(COVARIATES > 1),
         }
     }
 
@@ -201,6 +209,13 @@ where
         writer.push(&self.kept.reads.stored())?;
         for accumulator in self.kept.accumulators() {
             writer.push(&accumulator.total())?;
+        }
+        let neighbours = self.kept.covariates.windows(2);
+        for (pair, between) in neighbours.zip(self.kept.between.iter().skip(1)) {
+            let [one, other] = pair else { continue };
+            for octave in 0..OCTAVES {
+                writer.push(&between.read(octave, one, other).parts())?;
+            }
         }
         writer.push(&self.losses)?;
         if let Some(gate) = self.gate.gate() {
@@ -321,6 +336,11 @@ where
             for accumulator in self.kept.accumulators_mut() {
                 accumulator.set_total(reader.take()?);
             }
+        }
+        let neighbours = self.kept.between.iter_mut().skip(1);
+        for sum in neighbours.flat_map(|between| between.sums_mut()) {
+            let (low, upper) = reader.take()?;
+            *sum = ProductSum::from_parts(low, upper);
         }
         self.losses = reader.take()?;
         if let Some(gate) = self.gate.gate_mut() {

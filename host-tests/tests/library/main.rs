@@ -12,6 +12,7 @@ mod chi_squared;
 mod course;
 mod covariance;
 mod covariate;
+mod covariate_lag;
 mod effect;
 mod fit;
 mod integrity;

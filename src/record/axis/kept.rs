@@ -32,6 +32,8 @@ pub(crate) struct AxesSums<
     pub(crate) axes: [AxisSums<OCTAVES, COVARIATES, M, S, T>; AXES],
     /// One accumulator for each covariate, shared by all axes.
     pub(crate) covariates: [Accumulator<OCTAVES>; COVARIATES],
+    /// The products of each covariate with the one before it. Those of the first one stay zero.
+    pub(crate) between: [CrossSums<OCTAVES>; COVARIATES],
     /// What a reader made of the samples.
     pub(crate) reads: Reads<AXES>,
 }
@@ -69,6 +71,24 @@ impl Observer for Completed {
     #[inline(always)]
     fn observe(&mut self, octave: usize, difference: i64) {
         self.0[octave.min(3)] = difference;
+    }
+}
+
+/// What is updated together with the accumulator of a covariate: its differences, and their products with those of the covariate
+/// before it.
+struct Neighbours<'a, const OCTAVES: usize> {
+    completed: Completed,
+    before: Option<Completed>,
+    between: &'a mut CrossSums<OCTAVES>,
+}
+
+impl<const OCTAVES: usize> Observer for Neighbours<'_, OCTAVES> {
+    #[inline(always)]
+    fn observe(&mut self, octave: usize, difference: i64) {
+        self.completed.observe(octave, difference);
+        if let Some(before) = self.before {
+            self.between.add(octave, before.of(octave), difference);
+        }
     }
 }
 
@@ -150,6 +170,7 @@ where
     pub(crate) const NEW: Self = Self {
         axes: [const { AxisSums::NEW }; AXES],
         covariates: [const { Accumulator::new() }; COVARIATES],
+        between: [const { CrossSums::NEW }; COVARIATES],
         reads: Reads::new(),
     };
 
@@ -200,8 +221,17 @@ where
         }
         let mut completed = [Completed([0; 4]); COVARIATES];
         let covariates = self.covariates.iter_mut().zip(&sample.covariates);
-        for ((covariate, &count), completed) in covariates.zip(&mut completed) {
-            covariate.push_observed(count, completed);
+        let sums = completed.iter_mut().zip(&mut self.between);
+        let mut before = None;
+        for ((covariate, &count), (completed, between)) in covariates.zip(sums) {
+            let mut neighbours = Neighbours {
+                completed: *completed,
+                before,
+                between,
+            };
+            covariate.push_observed(count, &mut neighbours);
+            *completed = neighbours.completed;
+            before = Some(*completed);
         }
         for (axis, &count) in self.axes.iter_mut().zip(&sample.counts) {
             axis.push(count, &completed);
@@ -244,6 +274,7 @@ where
         let Some(touched) = touched else {
             return self.gap(missing.samples);
         };
+        self.add_pending_between(touched);
         for axis in &mut self.axes {
             axis.add_pending(touched, &self.covariates);
             axis.integrity.gap();
@@ -274,6 +305,7 @@ where
     /// No difference spans this place, where so many samples are missing, or an unknown number if it is 0.
     #[inline(never)]
     pub(crate) fn gap(&mut self, missing: u64) {
+        self.add_pending_between(OCTAVES);
         for axis in &mut self.axes {
             axis.add_pending(OCTAVES, &self.covariates);
             axis.accumulator.gap();
@@ -283,6 +315,20 @@ where
         }
         self.covariates.iter_mut().for_each(Accumulator::gap);
         self.reads.gap();
+    }
+
+    /// As [`AxisSums::add_pending`], of the covariates among themselves.
+    fn add_pending_between(&mut self, octaves: usize) {
+        let pairs = self.covariates.windows(2);
+        for (pair, between) in pairs.zip(self.between.iter_mut().skip(1)) {
+            let [before, covariate] = pair else { continue };
+            for octave in 0..octaves {
+                let pending = before.pending_difference(octave);
+                if let (Some(one), Some(other)) = (pending, covariate.pending_difference(octave)) {
+                    between.add(octave, one, other);
+                }
+            }
+        }
     }
 
     pub(crate) fn add_missing(&mut self, samples: u64) {
@@ -306,6 +352,9 @@ where
             }
         }
         for (own, other) in self.covariates.iter_mut().zip(&other.covariates) {
+            own.merge(other);
+        }
+        for (own, other) in self.between.iter_mut().zip(&other.between) {
             own.merge(other);
         }
         self.reads.merge(&other.reads);

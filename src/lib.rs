@@ -71,7 +71,7 @@
 //! | [`integrity`] | decides whether the record is one of a gyro at rest |
 //! | [`motion`] | recognises a gyro that was held, carried or swung for the whole record |
 //! | [`faults`] | detects faults of the logger: repeated samples, stuck values, saturation (clipping), a dead band |
-//! | [`kurtosis`], [`covariate`] | detect jumps of the rate, and its dependence on a temperature |
+//! | [`kurtosis`], [`covariate`] | detect jumps of the rate, and its dependence on a temperature, with its lag |
 //! | [`course`] | finds changes of the noise, bursts, steps and warm-ups in the block history |
 //! | [`curve`] | holds τ, averaging factor, variance and number of differences of each octave |
 //! | [`effect`], [`model`] | the components of a curve, one file for each effect, and lists of effects |

@@ -22,8 +22,15 @@ pub use replay::replay;
 pub use report::{GyroRecord, Report};
 pub use world::{CUTS, Cut, Plan, Source, Stored, World};
 
-pub use super::product::{Failure, Gyro};
-use allanite::{Real, Scale};
+pub use super::product::Failure;
+use super::product::OCTAVES;
+use allanite::{
+    Axes, Real, Scale,
+    axis::{Courses, Gated, Moments, Spectral},
+};
+
+/// Three axes and a temperature, with a gate, fourth moments, a spectrum and the course.
+pub type Gyro = Axes<OCTAVES, 1, Gated, Moments, 3, Spectral<64, 7, 84>, Courses>;
 
 /// The number of samples of the record: 5½ minutes.
 pub const SAMPLES: u32 = 1 << 15;

@@ -9,7 +9,7 @@ use allanite::{
     Curve, Real,
     axis::AxisRecord,
     course::Block,
-    diagnosis::{Addition, Step},
+    diagnosis::{Addition, Dependence, Step},
     ieee_952,
     spectrum::Spectrum,
 };
@@ -184,4 +184,14 @@ pub fn step<const K: usize, const B: usize>(
         }
         None => {}
     }
+}
+
+/// Prints the slope and the lag with which the rate follows a temperature.
+pub(super) fn dependence(found: Option<Dependence>, line: &mut impl FnMut(Arguments<'_>)) {
+    let Some(found) = found else { return };
+    let [slope, error, lag_s] = [found.slope.value, found.slope.error, found.lag_s].map(Exact);
+    let lag_error_s = found.lag_error_s.map_or(Exact(-1.0), Exact);
+    line(format_args!(
+        "dependence slope {slope} error {error} lag {lag_s} error {lag_error_s}"
+    ));
 }

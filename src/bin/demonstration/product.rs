@@ -1,5 +1,5 @@
 //! Everything that a product does with three axes and every part of the library. Samples pass through a queue
-//! that overflows now and then, together with a temperature. Three samples are corrupt, the gyro is moved
+//! that overflows now and then, together with a temperature, which the first axis follows late. Three samples are corrupt, the gyro is moved
 //! once, and the power fails once after a snapshot. At the end there are a verdict of the self-test and a
 //! diagnosis.
 
@@ -8,7 +8,8 @@ use allanite::{
     Axes, Error, Model, Real, Scale,
     axis::{Courses, Gated, Moments, Sample, Spectral},
     course::analyse,
-    diagnosis::{Diagnosis, Options},
+    covariate::Lags,
+    diagnosis::{Addition, Diagnosis, Options, Step},
     effect::CATALOGUE,
     fit,
     queue::{self, Queued},
@@ -21,8 +22,8 @@ use heapless::{Vec, spsc::Queue};
 /// The number of octaves of averaging time.
 pub const OCTAVES: usize = 16;
 
-/// Three axes and a temperature, with a gate, fourth moments, a spectrum and the course.
-pub type Gyro = Axes<OCTAVES, 1, Gated, Moments, 3, Spectral<64, 7, 84>, Courses>;
+/// Three axes and a temperature as it is and behind a lag, with a gate, fourth moments, a spectrum and the course.
+pub type Gyro = Axes<OCTAVES, 2, Gated, Moments, 3, Spectral<64, 7, 84>, Courses>;
 
 /// The number of samples that the sensor makes: 11 minutes.
 pub const SAMPLES: u32 = 1 << 16;
@@ -46,16 +47,25 @@ const USUAL: u32 = 8;
 const RATE_HZ: Real = 100.0;
 /// The scale of the temperature in kelvin per count.
 const KELVIN: Real = 0.01;
+/// The temperature as it is, and behind a lag of 20 s. The lag of the first axis is between the two.
+const BANK: [u32; 2] = [0, 11];
+const LAG: u32 = 10;
+/// The scale of the covariates.
+const UNITS: [Real; 2] = [KELVIN / Lags::<2>::PER_COUNT as Real; 2];
 
 /// Three simulated gyros and a thermometer.
 pub(super) struct Sensor {
     gyros: [SimulatedGyro; 3],
     made: u32,
+    /// The temperature that the first axis follows.
+    inside: Lags<1>,
 }
 
 impl Sensor {
-    pub(super) fn new() -> Self {
+    /// The first axis follows the temperature with a lag of 2^`log2` samples, or at once if it is 0.
+    pub(super) fn new(log2: u32) -> Self {
         Self {
+            inside: Lags::new([log2]),
             gyros: [0, 1, 2].map(|axis| SimulatedGyro::new(AMPLITUDES, SEED + axis)),
             made: 0,
         }
@@ -77,7 +87,8 @@ impl Sensor {
         // it by 0.06 °/s per kelvin.
         let half = SAMPLES / 2;
         let temperature = (n.min(SAMPLES.saturating_sub(n)) * 1000 / half) as i32;
-        counts[0] += temperature * 8 / 100;
+        let [inside] = self.inside.push(temperature);
+        counts[0] += (inside >> 8) * 8 / 100;
         if MOTION.contains(&n) {
             counts[1] += 3000;
         }
@@ -143,7 +154,8 @@ pub fn run(
     mut line: impl FnMut(Arguments<'_>),
 ) -> Result<(), Failure> {
     let scale = Scale::new(1.0 / 131.0, RATE_HZ)?;
-    let mut sensor = Sensor::new();
+    let mut sensor = Sensor::new(LAG);
+    let mut lags = Lags::new(BANK);
     let mut tests = [self_test(scale).ok_or(Failure::Plan)?];
     let mut stored: &[u8] = &[];
     let mut flash = Some(flash);
@@ -163,12 +175,13 @@ pub fn run(
         }
         while let Some(Queued { sample, lost }) = main_loop.receive() {
             gyro.lost(lost.into());
-            gyro.push(sample);
+            let [temperature] = sample.covariates;
+            gyro.push((sample.counts, lags.push(temperature)));
         }
         // The main loop has nothing else to do.
         while gyro.advance() {}
         if tests[0].is_due(gyro.samples()) {
-            let x = gyro.record_so_far(0, (scale, [KELVIN]))?;
+            let x = gyro.record_so_far(0, (scale, UNITS))?;
             let status = tests[0].look(&x)?;
             line(format_args!("look samples {} {status:?}", x.samples));
         }
@@ -198,14 +211,20 @@ pub fn run(
     ));
     for (axis, seen) in gyro.seen().into_iter().enumerate() {
         line(format_args!("axis {axis} seen {:?}", seen.tally()));
-        lines::record(&gyro.record_so_far(axis, (scale, [KELVIN]))?, &mut line);
+        lines::record(&gyro.record_so_far(axis, (scale, UNITS))?, &mut line);
     }
-    let x = gyro.record_so_far(0, (scale, [KELVIN]))?;
+    let x = gyro.record_so_far(0, (scale, UNITS))?;
     let (model, options) = (Model::ieee_952(), Options::default());
     let mut diagnosis = Diagnosis::new(&x, &model, &CATALOGUE, options);
     // A product feeds its watchdog here, and takes the next samples.
     let mut pause = || ControlFlow::Continue(());
-    if let Some(verdict) = diagnosis.run(|step| lines::step(step, &mut line), &mut pause)? {
+    let told = |step: &Step<_, _>| {
+        lines::step(step, &mut line);
+        if let Some(Addition::Covariate(followed)) = &step.added {
+            lines::dependence(followed.dependence(&lags, RATE_HZ), &mut line);
+        }
+    };
+    if let Some(verdict) = diagnosis.run(told, &mut pause)? {
         line(format_args!("verdict {verdict:?}"));
     }
     course(gyro, scale, &mut line)?;
@@ -221,7 +240,7 @@ fn course(gyro: &Gyro, scale: Scale, line: &mut impl FnMut(Arguments<'_>)) -> Re
     for block in course.blocks(scale) {
         lines::block(&block, &mut *line);
     }
-    let y = gyro.record_so_far(1, (scale, [KELVIN]))?;
+    let y = gyro.record_so_far(1, (scale, UNITS))?;
     let analysis = analyse(
         &y.curve,
         &Model::ieee_952(),

@@ -38,7 +38,7 @@ impl Source {
         cuts[CUTS - 1] = SAMPLES + BURST + below(DIAGNOSIS);
         cuts.sort_unstable();
         Self {
-            sensor: Sensor::new(),
+            sensor: Sensor::new(0),
             cuts,
             done: 0,
         }

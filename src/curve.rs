@@ -295,7 +295,36 @@ fn power_of_four(points: &[Point]) -> Real {
     unit
 }
 
+/// The number of differences from which an octave shows that rounding is carried over.
+const CARRIED: u64 = 1000;
+/// By how much σ² then exceeds m times that of m samples. White noise that is rounded reaches 1.31 in 4500 records, of which one with
+/// hardly any sample off its level reached 2; pulses reach 1.5 from 20 000 samples on in 311 of 311, and from 5000 on in 309 of 318.
+const MORE_THAN_WHITE: Real = 1.5;
+
+/// Whether rounding is carried over to the next sample, as in counts of pulses of an angle: what is rounded off a sample is not lost
+/// but part of the next one, so that the mean of several samples varies less than that of independent ones. Then noise below
+/// half a count is no reason to reject a record. `octaves` are averaging factor, number of differences, and Allan variance in any
+/// unit, shortest averaging time first.
+pub fn carries_rounding(octaves: impl IntoIterator<Item = (u32, u64, Real)>) -> bool {
+    let mut octaves = octaves
+        .into_iter()
+        .take_while(|&(_, differences, _)| differences >= CARRIED);
+    let Some((1, _, first)) = octaves.next() else {
+        return false;
+    };
+    octaves.any(|(m, _, variance)| first > MORE_THAN_WHITE * real(m) * variance)
+}
+
 impl<const K: usize> Accumulator<K> {
+    /// Whether [rounding is carried over](carries_rounding) to the next sample.
+    pub fn carries_rounding(&self) -> bool {
+        carries_rounding(self.octaves().map(|octave| {
+            let m = real(octave.m);
+            let mean_square = octave.sum.to_real() / octave.differences.max(1) as Real;
+            (octave.m, octave.differences, mean_square / (m * m))
+        }))
+    }
+
     /// The mean rate, in rate units: the bias of a gyro at rest, with the part of the earth's rate that it sees. `None` without
     /// samples, for 2³² samples and more, and for a record from a snapshot that does not hold it.
     pub fn mean_rate(&self, scale: Scale) -> Option<Real> {

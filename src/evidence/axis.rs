@@ -24,9 +24,10 @@ use crate::{
         axis::{
             courses::CourseSums as _,
             gate::{Gate, Passing as _},
+            kept::AxisSums,
             moments::MomentSums as _,
         },
-        integrity::{Integrity, Reason, exceeds},
+        integrity::{Reason, exceeds},
     },
     spectrum::Spectrum,
 };
@@ -206,12 +207,15 @@ where
     pub fn verdict(&self, axis: usize) -> Option<Reason> {
         // The rounding of pulses of an angle is carried over to the next sample.
         let has_pulses = AXES == 3 && self.kept.reads.joint().is_alternating();
-        let verdict = |integrity: &Integrity| {
-            let verdict = integrity.verdict();
-            verdict.filter(|reason| !(has_pulses && matches!(reason, Reason::Coarse { .. })))
+        let verdict = |axis: &AxisSums<_, _, _, _, _>| {
+            let is_rounded = |reason: &Reason| {
+                let is_coarse = matches!(reason, Reason::Coarse { .. });
+                !is_coarse || !has_pulses && !axis.accumulator.carries_rounding()
+            };
+            axis.integrity.verdict().filter(is_rounded)
         };
-        let own = self.kept.axes.get(axis).map(|axis| &axis.integrity);
-        let all = self.kept.axes.iter().map(|axis| &axis.integrity);
+        let own = self.kept.axes.get(axis);
+        let all = self.kept.axes.iter();
         let moved = |reason: &Reason| matches!(reason, Reason::Moved { .. });
         let others = all.filter_map(verdict).find(moved);
         let left_out = self
@@ -224,10 +228,9 @@ where
         let known = first.or(reads).or(left_out);
         // A change of the noise of this axis explains what only others show.
         let is_of_others = known.as_ref().is_some_and(moved)
-            && own.is_some_and(|integrity| integrity.verdict().is_none());
+            && own.is_some_and(|axis| axis.integrity.verdict().is_none());
+        let course = own.and_then(|sums| sums.course.course());
         let own = known.filter(|_| !is_of_others);
-        let sums = self.kept.axes.get(axis);
-        let course = sums.and_then(|sums| sums.course.course());
         course
             .map_or(own, |course| course.or_changed(own))
             .or(known)

@@ -38,6 +38,11 @@ const STEEPEST: Real = 0.95;
 /// rest has an angle random walk of 0.5 °/s/√Hz.
 const LOUD: Real = -0.602;
 
+/// log₁₀ of the τσ² in (°/s)²/Hz at a quarter, half or whole second that is motion if it lies [`RISEN`] above the least one at shorter
+/// times: a gyro at rest with such slow noise would have an Allan deviation of 1000 °/h at a second.
+const LOUD_WHERE_RISEN: Real = -1.046;
+const RISEN: Real = 1.0;
+
 /// The place of the feature of an axis that has a unit, and of the other one of three axes.
 const LEVEL: usize = 5;
 const LEAST_LEVEL: usize = FEATURES + 2;
@@ -146,7 +151,10 @@ impl Slowness {
     /// Whether the noise is larger than that of any gyro, with a unit whose square has this log₁₀.
     fn is_loud(&self, unit: Real) -> bool {
         let mut slow = self.levels.iter().skip(SLOW).take(3);
-        self.known >= SLOW.saturating_add(3) && slow.all(|level| level - unit > LOUD)
+        let is_loud = self.known >= SLOW.saturating_add(3) && slow.all(|level| level - unit > LOUD);
+        let pairs = self.levels.iter().zip(&self.least).skip(SLOW).take(3);
+        let mut risen = pairs.filter(|(level, least)| *level - *least > RISEN);
+        is_loud || risen.any(|(level, _)| level - unit > LOUD_WHERE_RISEN)
     }
 
     /// The rise among the slow times.

@@ -81,9 +81,10 @@ impl Recorded {
         let units: Vec<f64> = self.named.iter().map(unit).collect();
         let told = watched.evidence(scale, &units).map_err(fail)?;
         // The order of the reasons is that of counts, where coarse numbers come before the jumps that they seem to make.
+        let carries = || has_pulses || watched.accumulator().carries_rounding();
         let own = told
             .invalid
-            .filter(|reason| !(has_pulses && matches!(reason, Reason::Coarse { .. })));
+            .filter(|reason| !(matches!(reason, Reason::Coarse { .. }) && carries()));
         let invalid = match own {
             _ if matches!(fault, Some(Reason::Unanswered { .. })) => fault,
             Some(Reason::Railed { .. } | Reason::Misread { .. }) => own,

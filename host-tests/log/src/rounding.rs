@@ -148,11 +148,10 @@ impl Steps {
         let mean = octave.sum.to_real() / octave.differences as f64;
         let per_mille = 1000.0 * mean / (step * step);
         let is_judged = octave.differences >= JUDGED;
-        (is_judged && per_mille < f64::from(limits.difference_per_mille)).then_some(
-            Reason::Coarse {
-                per_mille: per_mille as u16,
-            },
-        )
+        let is_coarse = is_judged && per_mille < f64::from(limits.difference_per_mille);
+        (is_coarse && !sums.carries_rounding()).then_some(Reason::Coarse {
+            per_mille: per_mille as u16,
+        })
     }
 
     /// Tells that samples are missing before the next number.

@@ -5,7 +5,11 @@
 //! the limits of `Integrity` in the end.
 
 use super::{Pieces, runs::Closed, sizes::Sizes};
-use allanite::integrity::{Limits, Reason};
+use crate::OCTAVES;
+use allanite::{
+    curve::carries_rounding,
+    integrity::{Limits, Reason},
+};
 
 /// The number of pairs of neighbours, of runs, and of differences of blocks from which they are judged, as in the library.
 const JUDGED: u64 = 1000;
@@ -56,11 +60,22 @@ impl Pieces {
             return Some(Reason::Railed { hits, samples });
         }
         let of_runs = whole.repeated().or_else(|| whole.stuck(limits));
-        let of_noise = of_runs.or_else(|| whole.coarse(limits));
+        let coarse = || whole.coarse(limits).filter(|_| !self.carries_rounding());
+        let of_noise = of_runs.or_else(coarse);
         let of_rest = of_noise.or_else(|| whole.disturbed(limits));
         let (missing, sent) = (whole.missing, samples.saturating_add(whole.missing));
         let is_missing = exceeds(missing.into(), sent.into(), limits.missing_per_mille);
         of_rest.or(is_missing.then_some(Reason::Missing { missing, sent }))
+    }
+
+    /// Whether rounding is carried over to the next sample.
+    fn carries_rounding(&self) -> bool {
+        carries_rounding((0..OCTAVES).map(|octave| {
+            let (differences, squares) = self.octave(octave);
+            let m = 1_u32 << octave;
+            let mean_square = squares as f64 / differences.max(1) as f64;
+            (m, differences, mean_square / f64::from(m).powi(2))
+        }))
     }
 
     fn whole(&self) -> Option<Whole> {

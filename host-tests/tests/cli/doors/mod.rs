@@ -4,6 +4,9 @@
 
 mod device;
 mod simulated;
+mod truth;
+
+pub(crate) use truth::Truth;
 
 use device::Products;
 use program::{command, json, output, run};
@@ -162,12 +165,13 @@ impl Count {
 fn a_record_is_judged_alike_by_every_door() {
     let count = Count::of(1, 1, 6_000..30_000);
     assert_eq!(count.unequal, [""; 0], "{count:?}");
-    // Motion of hands and vehicles has the shape of filtered noise: not all of it is recognised.
-    let is_sure = |wrong: &&String| {
-        !["HandHeld", "Vehicle"]
-            .iter()
-            .any(|one| wrong.starts_with(one))
-    };
+    // Slight motion of a vehicle has the shape of filtered noise: not all of it is recognised.
+    let is_sure = |wrong: &&String| !wrong.starts_with("Vehicle");
     let wrong: Vec<&String> = count.wrong.iter().filter(is_sure).collect();
     assert_eq!(wrong, [""; 0], "{count:?}");
+}
+
+#[test]
+fn a_device_distinguishes_rest_from_what_happens_to_it() {
+    Truth::of(20, 1, 2_000..30_000).assert();
 }

@@ -1,6 +1,6 @@
 //! Six hundred records by all doors.
 
-use crate::doors::Count;
+use crate::doors::{Count, Truth};
 
 #[test]
 fn six_hundred_records_get_one_verdict_each() {
@@ -14,11 +14,17 @@ fn six_hundred_records_get_one_verdict_each() {
     for (event, [found, all]) in &count.found {
         let least = match event.as_str() {
             "Nothing" => continue,
-            "HandHeld" | "Vehicle" => 50,
+            // Slight motion has the shape of noise behind a low pass.
+            "Vehicle" => 80,
             // An offset may keep the counts of an axis from zero.
             "Unsigned" => 85,
             _ => 95,
         };
         assert!(found * 100 >= least * all, "{event}: {count:?}");
     }
+}
+
+#[test]
+fn a_device_is_right_about_four_thousand_records() {
+    Truth::of(200, 2, 2_000..30_000).assert();
 }

@@ -119,13 +119,13 @@
 #endif
 
 // Words of an `AllaniteGyro`.
-#define ALLANITE_GYRO_WORDS (3282 + (66 * ALLANITE_OCTAVES))
+#define ALLANITE_GYRO_WORDS (3282 + (69 * ALLANITE_OCTAVES))
 
 // Words of an `AllaniteAxis`.
 #define ALLANITE_AXIS_WORDS (24 + (12 * ALLANITE_OCTAVES))
 
 // Words of an `AllaniteRecord`.
-#define ALLANITE_RECORD_WORDS (472 + (7 * ALLANITE_OCTAVES))
+#define ALLANITE_RECORD_WORDS (478 + (8 * ALLANITE_OCTAVES))
 
 // Words of an `AllaniteSelfTest`.
 #define ALLANITE_SELF_TEST_WORDS 38

@@ -17,11 +17,11 @@ pub const ALLANITE_OCTAVES: usize = 26;
 pub const ALLANITE_OCTAVES: usize = 20;
 
 /// Words of an `AllaniteGyro`.
-pub const ALLANITE_GYRO_WORDS: usize = 3282 + 66 * ALLANITE_OCTAVES;
+pub const ALLANITE_GYRO_WORDS: usize = 3282 + 69 * ALLANITE_OCTAVES;
 /// Words of an `AllaniteAxis`.
 pub const ALLANITE_AXIS_WORDS: usize = 24 + 12 * ALLANITE_OCTAVES;
 /// Words of an `AllaniteRecord`.
-pub const ALLANITE_RECORD_WORDS: usize = 472 + 7 * ALLANITE_OCTAVES;
+pub const ALLANITE_RECORD_WORDS: usize = 478 + 8 * ALLANITE_OCTAVES;
 /// Words of an `AllaniteSelfTest`.
 pub const ALLANITE_SELF_TEST_WORDS: usize = 38;
 /// Words of an `AllaniteLook`.

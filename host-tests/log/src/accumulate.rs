@@ -94,7 +94,15 @@ impl<T: Table> Passes<'_, T> {
         columns: &[AxisColumn],
         visitor: &mut V,
     ) -> Result<Passed, Failure> {
-        let clock = |time: &TimeColumn| (Clock::new(time.pace, &self.late), time.columns.len());
+        let clock = |time: &TimeColumn| {
+            let clock = Clock::new(time.pace, &self.late);
+            let clock = if time.is_date {
+                clock.of_times()
+            } else {
+                clock
+            };
+            (clock, time.columns.len())
+        };
         let clock = self.time.map(clock);
         let rate_hz = self.rate_hz.unwrap_or(f64::NAN);
         let is_by_rows = self.table.by_rows();

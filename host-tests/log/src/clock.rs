@@ -3,6 +3,7 @@
 use super::{
     field::{Flaw, Stamp},
     pace::Pace,
+    wrap::Wraps,
 };
 use crate::failure::plural;
 use std::time::Duration;
@@ -60,6 +61,7 @@ pub(super) enum Tick {
 #[derive(Clone, Debug)]
 pub(super) struct Clock {
     pace: Pace,
+    wraps: Wraps,
     last: Option<Stamp>,
     rows: u64,
     repeated: u64,
@@ -139,6 +141,7 @@ impl Clock {
             delayed: (0, 0.0),
             behind: Vec::new(),
             found: Vec::new(),
+            wraps: Wraps::of_numbers(&pace),
             pace,
             last: None,
             rows: 0,
@@ -157,6 +160,17 @@ impl Clock {
             block: (0, 0.0),
             means: None,
         }
+    }
+
+    /// The same clock for stamps that are written as times of day.
+    pub(super) fn of_times(mut self) -> Self {
+        self.wraps = Wraps::of_times(&self.pace);
+        self
+    }
+
+    /// The next row's stamp as it would be if the counter behind it had not begun anew.
+    pub(super) fn unwrap(&mut self, stamp: Stamp) -> Stamp {
+        self.wraps.unwrap(stamp, &self.pace)
     }
 
     /// Takes the stamp of the next row, and returns how it relates to the one before.
@@ -419,7 +433,7 @@ impl Clock {
                 plural(self.repeated, "row")
             );
         }
-        text
+        text + &self.wraps.report().unwrap_or_default()
     }
 }
 

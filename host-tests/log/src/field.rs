@@ -64,6 +64,16 @@ impl Stamp {
         }
     }
 
+    /// The stamp that is so many ticks later.
+    pub(super) fn later(self, ticks: f64) -> Self {
+        match self {
+            Self::Whole(now) if ticks.fract() == 0.0 => {
+                Self::Whole(now.saturating_add(ticks as i64))
+            }
+            now => Self::Real(now.to_f64() + ticks),
+        }
+    }
+
     /// This stamp, in nanoseconds, plus the given number of seconds.
     pub(super) fn behind_seconds(self, seconds: Self) -> Self {
         match (seconds, self) {

@@ -163,6 +163,7 @@ mod unit_names;
 pub mod visible;
 mod watched;
 mod worker;
+mod wrap;
 
 use crate::{
     block_means::BlockMeans,

@@ -122,6 +122,11 @@ impl Pace {
         Self { rows: 1.0, ..self }
     }
 
+    /// The number of ticks in a second.
+    pub(super) fn per_second(&self) -> f64 {
+        self.per_second
+    }
+
     /// The seconds in a number of ticks.
     pub(super) fn seconds(&self, ticks: f64) -> f64 {
         ticks / self.per_second

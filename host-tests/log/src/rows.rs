@@ -121,6 +121,7 @@ impl<'a, V: Visitor, const EACH: bool> Rows<'a, V, EACH> {
         let Some(clock) = &mut self.clock else {
             return Ok(());
         };
+        let stamp = clock.unwrap(stamp);
         let first = *self.first.get_or_insert(stamp);
         let at_s = clock.seconds(stamp.since(first));
         if self.dropped.ends_before(at_s) {

@@ -19,7 +19,7 @@ pub(super) struct TimeColumn {
     pub(super) pace: Pace,
     pub(super) unit: TimeUnit,
     /// Whether the stamps are written as dates and times.
-    is_date: bool,
+    pub(super) is_date: bool,
 }
 
 impl Columns {

@@ -8,6 +8,7 @@ mod sources;
 mod stamps;
 mod text;
 mod values;
+mod wraps;
 
 use allanite::Accumulator;
 use allanite_log::{self as log, Log, OCTAVES, Options, unit::Sensor};

@@ -19,14 +19,18 @@ pub fn note(axis: &AxisCurve, fit: &Fit) -> Option<String> {
     let name = AngleRandomWalk.description().name;
     let mut coefficients = fit.coefficients.iter();
     let white = coefficients.find(|one| one.name == name && one.state == State::Measured)?;
-    let without = white.value * white.value - square / (12.0 * axis.rate_hz);
+    let rounding = square / (12.0 * axis.rate_hz);
+    let without = white.value * white.value - rounding;
     let percent = 100.0 * (white.value / without.max(0.0).sqrt() - 1.0);
     if percent < LEAST_PERCENT || !percent.is_finite() {
         return None;
     }
     let (factor, unit) = words::customary(axis.unit, white.half_seconds);
+    let less = |value: f64| (value * value - rounding).max(0.0).sqrt();
+    let [value, lower, upper] =
+        [white.value, white.lower, white.upper].map(|end| number(factor * less(end)));
     Some(format!(
-        "rounding to whole counts raises angle random walk by {percent:.0} %: without it, it is {} {unit}",
-        number(factor * without.sqrt())
+        "rounding to whole counts raises angle random walk by {percent:.0} %: without it, it is {value} {unit}, \
+         95 % interval {lower} … {upper}"
     ))
 }

@@ -233,9 +233,10 @@ fn measure_once<T: Table>(passes: &Passes<T>, plan: &Plan) -> Result<Measured, F
 
     let mut ranges = Ranges(vec![Range::EMPTY; columns.len()]);
     passes.pass(&mut ranges)?;
+    let ranges = ranges.0;
     let quanta = columns
         .iter()
-        .zip(ranges.0)
+        .zip(ranges.iter().copied())
         .map(|(column, range)| {
             Quantum::of(range).ok_or_else(|| {
                 Place::file(path).failure(
@@ -248,18 +249,62 @@ fn measure_once<T: Table>(passes: &Passes<T>, plan: &Plan) -> Result<Measured, F
             })
         })
         .collect::<Result<Vec<_>, _>>()?;
+    let (measured, steps) = measure_rounded(passes, plan, quanta.clone())?;
+    check_rounded(path, columns, &steps, &measured)?;
+    let axes = measured.axes.iter().zip(&steps).zip(ranges);
+    let grids: Vec<Option<Quantum>> = axes
+        .map(|(((sums, quantum), steps), range)| {
+            let step = steps.grid(sums.accumulator())? * quantum.step();
+            Quantum::of_steps(range, step)
+        })
+        .collect();
+    if grids.iter().all(Option::is_none) {
+        return Ok(measured);
+    }
+    // Numbers that were rounded to steps as large as their noise are counts of these steps.
+    let grids = grids.into_iter().chain(std::iter::repeat(None));
+    let quanta = quanta.into_iter().zip(grids);
+    let quanta = quanta.map(|(quantum, grid)| grid.unwrap_or(quantum));
+    measure_rounded(passes, plan, quanta.collect()).map(|(measured, _)| measured)
+}
 
+/// Accumulates the given columns, whose numbers are rounded to these quanta.
+fn measure_rounded<T: Table>(
+    passes: &Passes<T>,
+    plan: &Plan,
+    quanta: Vec<Quantum>,
+) -> Result<(Measured, Vec<Steps>), Failure> {
     let mut plan = plan.clone();
     let zero = |quantum: &Quantum| quantum.count(quantum.relative(Exact::Float(0.0)));
     plan.faults.zeros = quanta.iter().map(zero).collect();
     let mut rounded = Rounded {
         batches: Batches::new(plan),
+        steps: vec![Steps::default(); quanta.len()],
         quanta,
         tried: passes.tried.clone(),
-        steps: vec![Steps::default(); columns.len()],
     };
     let passed = passes.pass(&mut rounded)?;
-    for (column, steps) in columns.iter().zip(&rounded.steps) {
+    let mut measured = finish(
+        passes.path,
+        rounded.batches,
+        &rounded.quanta,
+        &rounded.tried,
+        passed,
+    )?;
+    let steps = rounded.steps.iter().zip(&measured.axes);
+    let coarse = steps.map(|(steps, (sums, _))| steps.coarse(sums.accumulator()));
+    measured.coarse = coarse.collect();
+    Ok((measured, rounded.steps))
+}
+
+/// Checks that rounding to counts far below the range is far below the noise as well.
+fn check_rounded(
+    path: &Path,
+    columns: &[AxisColumn],
+    steps: &[Steps],
+    measured: &Measured,
+) -> Result<(), Failure> {
+    for (column, steps) in columns.iter().zip(steps) {
         // The tenth is chosen by hand.
         if steps.lost > steps.changes / 10 {
             return Err(Place::file(path).failure(
@@ -271,13 +316,6 @@ fn measure_once<T: Table>(passes: &Passes<T>, plan: &Plan) -> Result<Measured, F
             ));
         }
     }
-    let mut measured = finish(
-        path,
-        rounded.batches,
-        &rounded.quanta,
-        &rounded.tried,
-        passed,
-    )?;
     for (column, (sums, quantum)) in columns.iter().zip(&measured.axes) {
         if !quantum.is_whole() && is_coarse(sums) {
             return Err(Place::file(path).failure(
@@ -289,10 +327,7 @@ fn measure_once<T: Table>(passes: &Passes<T>, plan: &Plan) -> Result<Measured, F
             ));
         }
     }
-    let steps = rounded.steps.iter().zip(&measured.axes);
-    let coarse = steps.map(|(steps, (sums, _))| steps.coarse(sums.accumulator()));
-    measured.coarse = coarse.collect();
-    Ok(measured)
+    Ok(())
 }
 
 const NARROW: &str = "remove the outliers that make the range so wide";

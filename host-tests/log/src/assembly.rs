@@ -4,7 +4,7 @@ use super::{
     Axis, Evidence, Log, OCTAVES,
     accumulate::Measured,
     evidence::{Recorded, spread_motion},
-    faults, part,
+    faults, few, part,
     quantum::Quantum,
     scaling::{Origin, Scaling},
     sums::Sums,
@@ -128,6 +128,7 @@ impl Assembly<'_> {
             _ => part.finish(path, rate_hz, axis.rate_per_count),
         });
         let coarse = measured.coarse.get(place).copied().flatten();
+        let coarse = coarse.or_else(|| few::coarse(watched.accumulator(), &beside.extremes));
         let fault = measured.faults.verdict(place);
         let recorded = &self.recorded;
         let has_pulses = measured.faults.has_pulses(place);

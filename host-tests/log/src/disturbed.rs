@@ -111,6 +111,13 @@ impl Extremes {
         }
     }
 
+    /// The distance of the least sample from the greatest one.
+    pub(super) fn span(&self) -> u64 {
+        let blocks = self.blocks.iter().chain([&self.open]);
+        let all = blocks.fold(Block::EMPTY, |all, &block| all.with(block));
+        u64::try_from(i64::from(all.most) - i64::from(all.least)).unwrap_or(0)
+    }
+
     /// The time that has passed, in samples.
     pub(super) fn time(&self) -> u64 {
         self.blocks.len() as u64 * self.length + self.filled

@@ -82,9 +82,8 @@ impl Recorded {
         let told = watched.evidence(scale, &units).map_err(fail)?;
         // The order of the reasons is that of counts, where coarse numbers come before the jumps that they seem to make.
         let carries = || has_pulses || watched.accumulator().carries_rounding();
-        let own = told
-            .invalid
-            .filter(|reason| !(matches!(reason, Reason::Coarse { .. }) && carries()));
+        let is_told = |reason: &Reason| !(matches!(reason, Reason::Coarse { .. }) && carries());
+        let (own, coarse) = (told.invalid.filter(is_told), coarse.filter(is_told));
         let invalid = match own {
             _ if matches!(fault, Some(Reason::Unanswered { .. })) => fault,
             Some(Reason::Railed { .. } | Reason::Misread { .. }) => own,

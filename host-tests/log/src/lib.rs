@@ -113,9 +113,11 @@ mod disturbed;
 mod evidence;
 pub mod failure;
 mod faults;
+mod few;
 mod field;
 mod file;
 mod foreign;
+mod grid;
 mod hands;
 #[cfg(feature = "bags")]
 mod imu_message;

@@ -123,6 +123,23 @@ impl Quantum {
         origin.is_finite().then_some(Self { step, origin, base })
     }
 
+    /// The quantum of values within a range that are all multiples of about this step, but for a constant. Returns `None`
+    /// if the range has whole numbers that a float does not hold.
+    pub(super) fn of_steps(range: Range, step: f64) -> Option<Self> {
+        let (range, base) = range.centred();
+        let width = range.highest - range.lowest;
+        let steps = (width / step).round();
+        if base != 0 || !(1.0..1e9).contains(&steps) {
+            return None;
+        }
+        let step = decimal(width / steps);
+        Some(Self {
+            step,
+            origin: range.lowest / step,
+            base,
+        })
+    }
+
     /// The quantum of values that are counted from zero in steps of this size, which is a power of two.
     pub(super) const fn with_step(step: f64) -> Self {
         Self {
@@ -176,6 +193,20 @@ impl Quantum {
     pub(super) fn count(&self, relative: f64) -> i32 {
         round(relative / self.step - self.origin) as i32
     }
+}
+
+/// The decimal number of few digits that is nearly this one, or else this one.
+fn decimal(number: f64) -> f64 {
+    /// More digits are taken for chance.
+    const MOST: f64 = 1000.0;
+    let decimals = (0..=12).map(|digits| {
+        let power = 10f64.powi(digits);
+        ((number * power).round(), power)
+    });
+    let mut near = decimals.filter(|(whole, power)| {
+        (1.0..=MOST).contains(whole) && (number * power / whole - 1.0).abs() < 1e-6
+    });
+    near.next().map_or(number, |(whole, power)| whole / power)
 }
 
 /// Next to this number, floats are whole.
@@ -257,6 +288,30 @@ mod tests {
     fn counts_stay_within_half_of_i32() {
         let quantum = quantum(&[-0.7, 0.3]);
         assert!(quantum.count(0.3).abs() <= 1 << 29 && quantum.count(-0.7).abs() <= 1 << 29);
+    }
+
+    #[test]
+    fn rounded_decimals_become_counts_of_their_step() {
+        for (step, offset) in [
+            (0.01, 0.0),
+            (0.002, -7.0),
+            (0.05, 0.013),
+            (1.0 / 131.0, 0.0),
+        ] {
+            let values: Vec<f64> = (0..30)
+                .map(|i| offset + step * f64::from(i * 7 % 30))
+                .collect();
+            let mut range = Range::EMPTY;
+            let all = values.iter();
+            all.for_each(|&value| range.include(Exact::Float(value)));
+            let quantum = Quantum::of_steps(range, step * (1.0 + 1e-7)).unwrap();
+            assert!((quantum.step() / step - 1.0).abs() < 1e-12, "{step}");
+            for (i, &value) in (0..30).zip(&values) {
+                let count = quantum.count(value);
+                assert_eq!(count, i * 7 % 30, "{step}");
+                assert!((quantum.value(count.into()) - value).abs() < 1e-12);
+            }
+        }
     }
 
     #[test]

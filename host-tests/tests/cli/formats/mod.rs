@@ -4,6 +4,7 @@ mod broken;
 mod cases;
 mod layouts;
 mod origins;
+mod rounded;
 mod sources;
 mod stamps;
 mod text;

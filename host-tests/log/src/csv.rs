@@ -3,7 +3,9 @@
 use super::{
     columns::{AxisColumn, Columns, Look},
     dialect::Dialect,
+    edit::{Edit, Kept},
     field::{Field, Stamp, Text},
+    glue::Glue,
     lines::{Cut, Lines},
     metadata::Metadata,
     preamble::{Preamble, values},
@@ -11,6 +13,7 @@ use super::{
     source,
     table::{Ended, Table, Visitor, after_stop},
 };
+use crate::RowChoice;
 use crate::failure::{Failure, Place, quoted};
 use csv::ByteRecord;
 use indicatif::ProgressBar;
@@ -34,6 +37,7 @@ pub(super) struct Csv {
     text: PathBuf,
     gzip: bool,
     dialect: Dialect,
+    edit: Edit,
     metadata: Metadata,
     columns: Columns,
     /// The offset in the text of the first row.
@@ -45,18 +49,27 @@ pub(super) struct Csv {
 }
 
 impl Csv {
-    pub(super) fn open(path: &Path, gzip: bool) -> Result<Self, Failure> {
-        Self::open_as(path, path, gzip)
+    pub(super) fn open(path: &Path, gzip: bool, rows: Option<&RowChoice>) -> Result<Self, Failure> {
+        Self::open_as(path, path, gzip, rows)
     }
 
     /// Opens a text that was made of another file, which messages name.
-    pub(super) fn open_as(path: &Path, text: &Path, gzip: bool) -> Result<Self, Failure> {
+    pub(super) fn open_as(
+        path: &Path,
+        text: &Path,
+        gzip: bool,
+        rows: Option<&RowChoice>,
+    ) -> Result<Self, Failure> {
         let preamble = Preamble::read(path, text, gzip)?;
         let mut table = Self {
             path: path.to_owned(),
             text: text.to_owned(),
             gzip,
             dialect: preamble.dialect,
+            edit: Edit {
+                glue: preamble.glue,
+                kept: None,
+            },
             metadata: preamble.metadata,
             columns: Columns {
                 names: preamble.names,
@@ -76,20 +89,46 @@ impl Csv {
                 "check the separators, or keep only the columns of the sensor",
             ));
         }
-        let rows = table.first_records()?;
-        if rows.is_empty() {
+        if !table.look(preamble.width)? {
             return Err(Place::file(path).failure("no rows", "record some samples"));
         }
-        let columns = 0..preamble.width;
-        let columns = columns.map(|column| look(&rows, column));
-        (table.columns.looks, table.columns.heads) = columns.unzip();
-        let looks = table.columns.looks.iter().enumerate();
+        if let Some(choice) = rows {
+            table.keep_rows(choice, preamble.width)?;
+        }
+        Ok(table)
+    }
+
+    /// Looks at the columns of the first rows. Returns whether there are any.
+    fn look(&mut self, width: usize) -> Result<bool, Failure> {
+        let rows = self.first_records()?;
+        let columns = (0..width).map(|column| look(&rows, column));
+        (self.columns.looks, self.columns.heads) = columns.unzip();
+        let looks = self.columns.looks.iter().enumerate();
         let tags = looks.map(|(column, look)| match look {
             Look::Text => tags(&rows, column),
             _ => Vec::new(),
         });
-        table.columns.tags = tags.collect();
-        Ok(table)
+        self.columns.tags = tags.collect();
+        Ok(!rows.is_empty())
+    }
+
+    /// Leaves out all rows but those with a value in a column.
+    fn keep_rows(&mut self, choice: &RowChoice, width: usize) -> Result<(), Failure> {
+        self.edit.kept = Some(Kept {
+            column: self.columns.find(&self.path, &choice.column)?,
+            value: choice.value.clone(),
+            dialect: self.dialect,
+        });
+        if self.look(width)? {
+            return Ok(());
+        }
+        let (column, value) = [&choice.column, &choice.value]
+            .map(|text| quoted(text.as_bytes()))
+            .into();
+        Err(Place::file(&self.path).failure(
+            format!("no row has {value} in column {column}"),
+            "give another --rows COLUMN=VALUE",
+        ))
     }
 
     /// The text from the first row on, with one delimiter between values.
@@ -97,7 +136,7 @@ impl Csv {
         let mut text = source::open_text(&self.text, self.gzip, progress)?;
         io::copy(&mut text.by_ref().take(self.start), &mut io::sink())
             .map_err(|error| self.failure((0, error)))?;
-        Ok(self.dialect.tidied(text))
+        Ok(self.dialect.tidied(self.edit.of(text)))
     }
 
     /// The first rows.
@@ -215,6 +254,7 @@ impl Table for Csv {
     fn notes(&self) -> Vec<String> {
         let note = "the last row has no line end: it may be cut off";
         let mut notes: Vec<String> = (!self.is_whole).then(|| note.into()).into_iter().collect();
+        notes.extend(self.edit.glue.iter().map(Glue::said));
         let (gaps, samples) = self.lost.get();
         if gaps > 0 {
             let comments = if gaps == 1 {

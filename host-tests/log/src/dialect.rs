@@ -113,6 +113,15 @@ impl Dialect {
         (best.0, best.1)
     }
 
+    /// The byte that may separate values, where decimals are written with points.
+    pub(super) fn separator_of_points(self) -> Option<u8> {
+        let byte = match self.separator {
+            Separator::Byte(byte) => byte,
+            Separator::Blanks => b' ',
+        };
+        (!self.decimal_comma).then_some(byte)
+    }
+
     /// The byte that separates the values in the text as [`Dialect::tidied`] passes it on.
     pub(super) fn delimiter(self) -> u8 {
         match self.separator {

@@ -154,6 +154,14 @@ fn read_parts(
     Ok((log, rest))
 }
 
+/// The failure of `--rows` for a log whose rows are not chosen.
+fn rows_of_text(path: &Path) -> Failure {
+    Place::file(path).failure(
+        "--rows chooses among the rows of text and of tables",
+        "omit it, or export the log as text",
+    )
+}
+
 /// Reads a log of a known format.
 fn read_format(
     path: &Path,
@@ -164,12 +172,12 @@ fn read_format(
 ) -> Result<(Log, Vec<Axis>), Failure> {
     match format {
         Format::Text { gzip } => {
-            let text = csv::Csv::open(path, gzip)?;
+            let text = csv::Csv::open(path, gzip, options.rows.as_ref())?;
             read_table(&text, path, options, wanted, progress)
         }
         Format::Parts => {
             let (joined, note) = parts::join(path, progress)?;
-            let text = csv::Csv::open_as(path, &joined, false)?;
+            let text = csv::Csv::open_as(path, &joined, false, options.rows.as_ref())?;
             let (mut log, rest) = read_table(&text, path, options, wanted, progress)?;
             log.notes.insert(0, note);
             Ok((log, rest))
@@ -181,6 +189,7 @@ fn read_format(
             let table = tables::convert(path, kind, options, progress)?;
             read_converted(&table, path, options, wanted, progress)
         }
+        Format::Npy | Format::Ulog if options.rows.is_some() => Err(rows_of_text(path)),
         Format::Npy => read_table(&npy::Npy::open(path)?, path, options, wanted, progress),
         Format::Ulog => {
             let log = ulog::Ulog::open(path, options, progress)?;
@@ -198,6 +207,9 @@ fn read_format(
             if let Some(table) = others {
                 return read_converted(&table, path, options, wanted, progress);
             }
+            if options.rows.is_some() {
+                return Err(rows_of_text(path));
+            }
             let bag = bag::Bag::open(path, files, options, progress)?;
             read_table(&bag, path, options, wanted, progress)
         }
@@ -213,7 +225,7 @@ fn read_converted(
     wanted: (Option<u64>, Option<Watched>),
     progress: &ProgressBar,
 ) -> Result<(Log, Vec<Axis>), Failure> {
-    let text = csv::Csv::open_as(path, &table.text, false)?;
+    let text = csv::Csv::open_as(path, &table.text, false, options.rows.as_ref())?;
     let (mut log, rest) = read_table(&text, path, options, wanted, progress)?;
     log.notes.extend(table.note.clone());
     Ok((log, rest))

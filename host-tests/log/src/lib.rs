@@ -110,6 +110,7 @@ mod cuts;
 mod date_time;
 mod dialect;
 mod disturbed;
+mod edit;
 mod evidence;
 pub mod failure;
 mod faults;
@@ -117,6 +118,7 @@ mod few;
 mod field;
 mod file;
 mod foreign;
+mod glue;
 mod grid;
 mod hands;
 #[cfg(feature = "bags")]
@@ -144,6 +146,7 @@ mod reading;
 mod records;
 pub mod regular_file;
 mod rounding;
+mod row_choice;
 mod rows;
 mod scaling;
 pub mod sizes;
@@ -189,6 +192,7 @@ pub use names::TimeUnit;
 pub use names::is_degrees_column;
 pub use octaves::accumulate;
 pub use places::Places;
+pub use row_choice::RowChoice;
 use serde::{Deserialize, Serialize};
 pub use spectrogram::Spectrogram;
 #[cfg(feature = "tables")]
@@ -222,6 +226,8 @@ pub struct Options {
     pub time_unit: Option<TimeUnit>,
     /// The topic to read, in a log with several topics.
     pub topic: Option<String>,
+    /// The rows to read, in a log with the rows of several sensors.
+    pub rows: Option<RowChoice>,
     /// What to do with samples that the logger repeated.
     pub repeats: Repeats,
     /// What is left out.

@@ -3,6 +3,7 @@
 
 use super::{
     dialect::{Dialect, Kind},
+    glue::Glue,
     metadata::Metadata,
     source, unit_names,
 };
@@ -28,6 +29,9 @@ const JUDGES: usize = 32;
 /// The most bytes of the preamble in which conventions are looked for.
 const LONGEST_SAID: usize = 1 << 13;
 
+/// The line that is kept of a log of ESP-IDF, whose times are milliseconds.
+pub(super) const OF_ESP_IDF: &str = "times of esp-idf in ms";
+
 /// What stands above the first row of a text.
 pub(super) struct Preamble {
     pub(super) dialect: Dialect,
@@ -39,6 +43,8 @@ pub(super) struct Preamble {
     pub(super) start: u64,
     /// The comments and lines above the names, in lower case.
     pub(super) said: String,
+    /// What is cut off the rows.
+    pub(super) glue: Option<Glue>,
 }
 
 /// A line of the text, without its end.
@@ -66,7 +72,15 @@ impl Preamble {
     pub(super) fn read(path: &Path, text: &Path, gzip: bool) -> Result<Self, Failure> {
         let mut metadata = Metadata::default();
         let mut said = String::new();
-        let (comment, lines) = sample(path, text, gzip, &mut metadata, &mut said)?;
+        let (comment, mut lines) = sample(path, text, gzip, &mut metadata, &mut said)?;
+        // Offsets are those of the text as it is.
+        let end = lines
+            .last()
+            .map_or(0, |line| line.offset + line.bytes.len() as u64 + 1);
+        let glue = cut(&mut lines);
+        if glue.as_ref().is_some_and(Glue::is_of_esp_idf) {
+            keep(&mut said, OF_ESP_IDF);
+        }
         let rows: Vec<&Line> = lines
             .iter()
             .filter(|line| line.comment().is_none())
@@ -148,9 +162,6 @@ impl Preamble {
             metadata.read_line(line.row, &text);
             keep(&mut said, &text);
         }
-        let end = lines
-            .last()
-            .map_or(0, |line| line.offset + line.bytes.len() as u64 + 1);
         Ok(Self {
             dialect,
             width,
@@ -158,8 +169,23 @@ impl Preamble {
             names,
             start: rows.get(first).map_or(end, |line| line.offset),
             said,
+            glue,
         })
     }
+}
+
+/// Cuts off what is around the values of the rows, if it has the same shape on the last ones.
+fn cut(lines: &mut [Line]) -> Option<Glue> {
+    let rows = || lines.iter().filter(|line| line.comment().is_none());
+    let judges: Vec<&[u8]> = rows().rev().take(JUDGES).map(|line| &*line.bytes).collect();
+    let (dialect, width) = Dialect::of_rows(&judges);
+    let glue = Glue::of_rows(&judges, dialect, width)?;
+    for line in lines.iter_mut().filter(|line| line.comment().is_none()) {
+        if let Some(bytes) = glue.cut(&line.bytes) {
+            line.bytes = bytes;
+        }
+    }
+    Some(glue)
 }
 
 pub(super) fn values(count: usize) -> String {

@@ -44,8 +44,10 @@ impl Columns {
                     shown.join(", ")
                 ),
                 format!(
-                    "keep the rows of one of them, such as those that have {} there",
-                    shown[0]
+                    "keep those of one of them, such as with --rows {}={}",
+                    self.name(column)
+                        .map_or_else(|| (column + 1).to_string(), str::to_owned),
+                    marks[0]
                 ),
             ));
         }

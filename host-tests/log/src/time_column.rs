@@ -5,6 +5,7 @@ use super::{
     columns::{AxisColumn, Columns, Look},
     names::{self, TimeUnit},
     pace::{Pace, possible_units},
+    preamble::OF_ESP_IDF,
 };
 use crate::failure::{Failure, Place, brief, quoted};
 use std::path::Path;
@@ -127,6 +128,8 @@ impl Columns {
         };
         let of_blackbox = self.name(column) == Some("time") && self.said.contains("blackbox");
         let told = told.or(of_blackbox.then_some(TimeUnit::Us));
+        let of_esp_idf = column == 0 && self.said.contains(OF_ESP_IDF);
+        let told = told.or(of_esp_idf.then_some(TimeUnit::Ms));
         let unit = match (told, possible.as_slice()) {
             (Some(unit), _) | (None, &[unit]) => unit,
             (None, []) => {

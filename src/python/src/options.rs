@@ -169,6 +169,7 @@ pub(crate) fn reading(given: Arguments) -> Result<Reading, Failure> {
         time: options.text("time"),
         time_unit: options.choice("time-unit")?,
         topic: options.text("topic"),
+        rows: options.one("rows")?,
         repeats: options.choice("repeats")?.unwrap_or_default(),
         cuts: Cuts {
             from: options.one("from")?,

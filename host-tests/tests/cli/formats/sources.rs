@@ -53,7 +53,7 @@ fn rows_of_sensors_that_a_column_names_are_not_one_gyro_of_twice_the_rate() {
             let [one, other] = names;
             let expected = format!(
                 "a.csv: the rows are those of 2 sensors, by column {name}: \"{one}\", \"{other}\"; \
-                 keep the rows of one of them, such as those that have \"{one}\" there"
+                 keep those of one of them, such as with --rows {name}={one}"
             );
             assert_eq!(line, expected);
         }
@@ -84,30 +84,43 @@ fn labels_of_what_is_done_and_numbers_that_stay_are_no_sensors() {
     }
 }
 
+/// The rows that are kept are those of a log that has no others, whatever tells them apart.
 #[test]
-fn values_within_brackets_are_not_lost() {
-    let mut random = Xoshiro256PlusPlus::seed_from_u64(3);
-    let mut rows = |pattern: &str| -> String {
-        (0..60)
-            .map(|_| {
-                let [x, y, z] = [(); 3].map(|()| noise(&mut random));
-                pattern.replace('x', &x).replace('y', &y).replace('z', &z) + "\n"
-            })
-            .collect()
-    };
-    for (pattern, column) in [
-        ("[x, y, z]", "column 1"),
-        ("x,y,z;", "column 3"),
-        ("(x;y;z)", "column 1"),
+fn rows_of_one_sensor_are_kept() {
+    let mut random = Xoshiro256PlusPlus::seed_from_u64(11);
+    for (header, names) in [
+        ("SensorId,time_s,gx,gy,gz", ["1", "2"]),
+        ("sensor,time_s,x,y,z", ["ACC", "GYR"]),
+        ("", ["acc", "gyro"]),
     ] {
-        let options = Options {
-            rate_hz: Some(100.0),
+        let (mut mixed, mut alone) = (format!("{header}\n"), format!("{header}\n"));
+        for n in 0..400 {
+            let name = names[n % 2];
+            let [x, y, z] = [(); 3].map(|()| noise(&mut random));
+            let row = format!("{name},{:.2},{x},{y},{z}\n", (n / 2) as f64 / 100.0);
+            mixed += &row;
+            if name == names[1] {
+                alone += &row;
+            }
+        }
+        let column = header.split_once(',').map_or("1", |(column, _)| column);
+        let options = |name: &str| Options {
+            rows: Some(format!("{column}={name}").parse().unwrap()),
             ..Options::default()
         };
-        let line = read_text(&rows(pattern), &options).unwrap_err();
-        let expected =
-            format!("a.csv: the values of {column} have other characters around them, such as ");
-        assert!(line.starts_with(&expected), "{pattern}: {line}");
+        let kept = read_text(&mixed, &options(names[1])).unwrap();
+        let alone = read_text(&alone, &Options::default()).unwrap();
+        assert_eq!((kept.rate_hz, kept.axes.len()), (100.0, 3), "{header}");
+        for (one, other) in kept.axes.iter().zip(&alone.axes) {
+            assert!(one.accumulator == other.accumulator, "{header}");
+            assert_eq!((&one.name, one.accumulator.samples()), (&other.name, 200));
+        }
+        let line = read_text(&mixed, &options("3")).unwrap_err();
+        let expected = format!("a.csv: no row has \"3\" in column \"{column}\"; ");
+        assert!(line.starts_with(&expected), "{line}");
+    }
+    for wrong in ["gyro", "=gyro", "sensor="] {
+        assert!(wrong.parse::<allanite_log::RowChoice>().is_err(), "{wrong}");
     }
 }
 

@@ -163,6 +163,6 @@ fn rows_of_several_sensors_are_not_mixed() {
     assert_eq!(
         line,
         "a.csv: the rows are those of 2 sensors, by column I: \"0\", \"1\"; \
-         keep the rows of one of them, such as those that have \"0\" there"
+         keep those of one of them, such as with --rows I=0"
     );
 }

@@ -280,7 +280,7 @@ def _from_bytes(data: bytes) -> Record:
 
 def _read_options(*, drop: Any = None, from_: Any = None, covariates: Any = None, **options: Any) -> _options.Options:
     """The options of a reader."""
-    known = {"rate", "scale", "unit", "columns", "sensor", "time", "time_unit", "topic", "repeats", "to"}
+    known = {"rate", "scale", "unit", "columns", "sensor", "time", "time_unit", "topic", "rows", "repeats", "to"}
     for name in options:
         if name not in known:
             raise TypeError(f"unexpected argument {name!r}; choose from {', '.join(sorted(known | {'drop', 'from_', 'covariates'}))}")
@@ -301,6 +301,7 @@ def read(
     time: str | None = None,
     time_unit: str | None = None,
     topic: str | None = None,
+    rows: str | None = None,
     repeats: str | None = None,
     from_: str | None = None,
     to: str | None = None,
@@ -331,6 +332,8 @@ def read(
         ``s``, ``ms``, ``us`` or ``ns``.
     topic : str, optional
         The topic of a bag or a ULog, or the table of a file with several.
+    rows : str, optional
+        The rows to read, in a log with the rows of several sensors: ``rows="SensorId=1"``.
     repeats : str, optional
         ``drop`` (the default) or ``keep`` samples that a logger repeated.
     from_, to, drop : str, optional
@@ -352,6 +355,6 @@ def read(
     """
     options = _read_options(
         rate=rate, scale=scale, unit=unit, columns=columns, sensor=sensor, time=time, time_unit=time_unit,
-        topic=topic, repeats=repeats, from_=from_, to=to, drop=drop, covariates=covariates,
+        topic=topic, rows=rows, repeats=repeats, from_=from_, to=to, drop=drop, covariates=covariates,
     )
     return Record(_native.Record.read(os.fspath(path), options, progress))

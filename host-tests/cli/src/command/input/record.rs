@@ -8,7 +8,7 @@ use allanite_host::{
 };
 use allanite_log::{
     self as log, ColumnChoice, CovariateChoice, Covariates, Cuts, Evidence, Log, Moment, Repeats,
-    TimeRange, TimeUnit,
+    RowChoice, TimeRange, TimeUnit,
     failure::{Failure, Place, one_line, report},
     unit::{Sensor, Unit},
 };
@@ -48,6 +48,9 @@ pub(crate) struct LogArguments {
     /// [default: the topic with the most samples]
     #[arg(long)]
     topic: Option<String>,
+    /// Read only the rows that have this value in this column, such as `SensorId=1`, in a log with the rows of several sensors
+    #[arg(long, value_name = "COLUMN=VALUE")]
+    rows: Option<RowChoice>,
     /// What to do with samples that a logger faster than the sensor repeated, where that is certain
     #[arg(long, value_name = "CHOICE", default_value = "drop")]
     repeats: Repeats,
@@ -75,6 +78,7 @@ impl LogArguments {
             time: self.time.clone(),
             time_unit: self.time_unit,
             topic: self.topic.clone(),
+            rows: self.rows.clone(),
             repeats: self.repeats,
             cuts: Cuts {
                 from: self.from.clone(),

@@ -120,6 +120,7 @@ mod file;
 mod foreign;
 mod glue;
 mod grid;
+mod gyroflow;
 mod hands;
 #[cfg(feature = "bags")]
 mod imu_message;

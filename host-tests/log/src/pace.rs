@@ -41,6 +41,11 @@ pub(super) struct Pace {
 impl Pace {
     /// The pace of the stamps `first`, in a unit. Returns `None` if the stamps never advance.
     pub(super) fn of(first: &[f64], unit: TimeUnit) -> Option<Self> {
+        Self::of_ticks(first, unit.per_second())
+    }
+
+    /// The pace of the stamps `first`, of which so many ticks are a second.
+    pub(super) fn of_ticks(first: &[f64], per_second: f64) -> Option<Self> {
         let mut steps = steps(first);
         // The last stamp may have more rows than are known.
         let last = (1..first.len())
@@ -48,7 +53,7 @@ impl Pace {
             .find(|&row| first[row] > first[row - 1]);
         let rows = last.unwrap_or(0) as f64 / steps.len().max(1) as f64;
         let rows = if rows > BURSTS { rows } else { 1.0 };
-        if let Some(even) = even(first, unit.per_second()) {
+        if let Some(even) = even(first, per_second) {
             return Some(even);
         }
         let usual = quantile(&mut steps, 0.5)?;
@@ -56,7 +61,7 @@ impl Pace {
         let scatter = quantile(&mut scatter, SCATTER.1)?;
         if let Some((step, longest)) = rounded(&mut steps) {
             return Some(Self {
-                per_second: unit.per_second(),
+                per_second,
                 step,
                 longest,
                 scatter,
@@ -65,7 +70,7 @@ impl Pace {
         }
         if let Some(step) = lattice(&mut steps) {
             return Some(Self {
-                per_second: unit.per_second(),
+                per_second,
                 step,
                 longest: GAP * step,
                 scatter,
@@ -73,7 +78,7 @@ impl Pace {
             });
         }
         Some(Self {
-            per_second: unit.per_second(),
+            per_second,
             step: usual,
             longest: (GAP * usual).max(usual + SCATTER.0 * scatter),
             scatter,

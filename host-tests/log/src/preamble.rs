@@ -128,6 +128,7 @@ impl Preamble {
             let is_name = |name: &String| Kind::of(name.as_bytes()) == Kind::Text;
             names = found.filter(|names| names.iter().all(is_name));
         }
+        let has_names = names.is_some();
         for line in preamble {
             let record = dialect.fields(&line.bytes);
             let is_short = width <= 2
@@ -146,6 +147,8 @@ impl Preamble {
                 Some(text)
                     if kinds.len() == width
                         && kinds.contains(&Kind::Number)
+                        // Settings stand above the names.
+                        && !(has_names && text == 0)
                         && (width > 2 || is_short) =>
                 {
                     return Err(Place::row(path, line.row).failure(

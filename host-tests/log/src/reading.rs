@@ -16,7 +16,7 @@ use super::{
     tried::TriedColumns,
     watched, worker,
 };
-use crate::failure::{Failure, Place, plural};
+use crate::failure::{Failure, Place, brief, plural};
 use indicatif::ProgressBar;
 use std::path::Path;
 
@@ -256,6 +256,11 @@ fn said(
     let mut parts: Vec<String> = columns.into_iter().collect();
     match scaling.origin {
         Origin::Names => parts.push(format!("unit {} from the column names", scaling.unit)),
+        Origin::Header => parts.push(format!(
+            "{} {} per count from the header of Gyroflow",
+            brief(scaling.scale),
+            scaling.unit
+        )),
         Origin::Convention(program) => {
             parts.push(format!(
                 "unit {} by the convention of {program} (change it with --unit)",

@@ -1,7 +1,7 @@
 //! Finds the size of one count of a log from the options, the comments and the names of columns, in
 //! this order.
 
-use super::{Axis, Options, columns::AxisColumn, table::Table};
+use super::{Axis, Options, columns::AxisColumn, gyroflow, table::Table};
 use crate::{
     failure::{Failure, Place},
     unit::{Sensor, Unit},
@@ -30,6 +30,8 @@ pub(super) enum Origin {
     Convention(&'static str),
     /// The unit is the one that goes with an accelerometer in m/s² beside the gyro.
     Beside,
+    /// The unit and the scale are in the header of Gyroflow's log.
+    Header,
     /// The unit is that in which an accelerometer feels gravity as 1.
     Gravity,
     /// The unit is assumed.
@@ -65,13 +67,18 @@ impl Scaling {
         let scale = table.metadata().scale(path, options)?;
         // Unit and scale together say all about the values. A unit alone names the unit of the
         // results, and the names may still say in what part of it the values are.
+        let mut of_header = None;
         let by_names = match (told, scale) {
             (Some(_), Some(_)) => None,
             (told, _) => {
                 let sensor = sensor.or(told.map(Unit::sensor)).unwrap_or(Sensor::Gyro);
+                let header = gyroflow::Header::of(&table.columns().said);
+                of_header = header.and_then(|header| header.scale(sensor));
                 table.columns().unit_of(path, axes, sensor)?
             }
         };
+        let of_header = of_header.filter(|_| by_names.is_none());
+        let by_names = by_names.or(of_header);
         if let (Some(told), Some((named, _))) = (told, by_names)
             && told != named
         {
@@ -85,6 +92,7 @@ impl Scaling {
         let convention = convention.filter(|convention| fits(&convention.unit));
         let (unit, origin) = match (told, by_names, convention) {
             (Some(unit), ..) => (unit, Origin::Told),
+            (None, Some((unit, _)), _) if of_header.is_some() => (unit, Origin::Header),
             (None, Some((unit, _)), _) => (unit, Origin::Names),
             (None, None, Some(convention)) => {
                 (convention.unit, Origin::Convention(convention.program))

@@ -3,6 +3,7 @@
 use super::{
     Options,
     columns::{AxisColumn, Columns, Look},
+    gyroflow,
     names::{self, TimeUnit},
     pace::{Pace, possible_units},
     preamble::OF_ESP_IDF,
@@ -18,7 +19,9 @@ const LEAST_STAMPS: usize = 9;
 pub(super) struct TimeColumn {
     pub(super) columns: Vec<AxisColumn>,
     pub(super) pace: Pace,
-    pub(super) unit: TimeUnit,
+    unit: TimeUnit,
+    /// The step in which the stamps count, if the log tells it.
+    step_s: Option<f64>,
     /// Whether the stamps are written as dates and times.
     pub(super) is_date: bool,
 }
@@ -105,6 +108,7 @@ impl Columns {
                 columns: vec![self.time_axis(column)],
                 pace,
                 unit: TimeUnit::Ns,
+                step_s: None,
                 is_date: true,
             }));
         }
@@ -130,6 +134,16 @@ impl Columns {
         let told = told.or(of_blackbox.then_some(TimeUnit::Us));
         let of_esp_idf = column == 0 && self.said.contains(OF_ESP_IDF);
         let told = told.or(of_esp_idf.then_some(TimeUnit::Ms));
+        let header = gyroflow::Header::of(&self.said).filter(|_| told.is_none());
+        if let Some(step_s) = header.and_then(|header| header.time_step_s()) {
+            return Ok(Pace::of_ticks(head, step_s.recip()).map(|pace| TimeColumn {
+                columns: vec![self.time_axis(column)],
+                pace,
+                unit: TimeUnit::S,
+                step_s: Some(step_s),
+                is_date: false,
+            }));
+        }
         let unit = match (told, possible.as_slice()) {
             (Some(unit), _) | (None, &[unit]) => unit,
             (None, []) => {
@@ -151,6 +165,7 @@ impl Columns {
             columns: vec![self.time_axis(column)],
             pace,
             unit,
+            step_s: None,
             is_date: false,
         }))
     }
@@ -248,6 +263,7 @@ impl Columns {
                 columns: vec![self.time_axis(seconds), self.time_axis(behind)],
                 pace: Pace::of(&first, TimeUnit::Ns)?,
                 unit: TimeUnit::Ns,
+                step_s: None,
                 is_date: false,
             })
         })
@@ -262,10 +278,11 @@ impl TimeColumn {
     }
 
     /// The unit of the stamps, or their form.
-    pub(super) fn unit_name(&self) -> &'static str {
-        match self.is_date {
-            true => "dates and times",
-            false => self.unit.name(),
+    pub(super) fn unit_name(&self) -> String {
+        match (self.is_date, self.step_s) {
+            (true, _) => "dates and times".into(),
+            (false, Some(step_s)) => format!("steps of {} s", brief(step_s)),
+            (false, None) => self.unit.name().into(),
         }
     }
 }

@@ -1,5 +1,6 @@
 //! Logs that the formats' own libraries wrote are read exactly, and refused if they are broken.
 
+mod above;
 mod around;
 mod broken;
 mod cases;

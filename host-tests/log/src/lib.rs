@@ -106,6 +106,7 @@ mod convention;
 mod converted;
 mod covariate;
 mod csv;
+mod curve;
 mod cuts;
 mod date_time;
 mod dialect;

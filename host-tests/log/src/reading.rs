@@ -110,6 +110,7 @@ fn sampling(
     path: &Path,
     options: &Options,
 ) -> Result<(Option<f64>, Option<TimeColumn>), Failure> {
+    table.columns().check_curve(path)?;
     let rate_hz = table.metadata().rate_hz(path, options)?;
     if let Some(rate_hz) = rate_hz
         && table.by_rows()

@@ -153,6 +153,36 @@ fn increments_of_an_angle_are_no_rates_until_they_are_scaled() {
     }
 }
 
+#[test]
+fn a_curve_of_deviations_is_no_log() {
+    let curve = |names: &str, factor: f64| {
+        let mut text = format!("{names}\n");
+        for n in 0..40 {
+            let tau = 0.01 * factor.powi(n);
+            writeln!(text, "{tau:.6},{:.6}", 0.005 / tau.sqrt()).unwrap();
+        }
+        text
+    };
+    let told = Options {
+        rate_hz: Some(100.0),
+        ..Options::default()
+    };
+    for (names, factor) in [
+        ("tau_s,adev_dps", 1.3),
+        ("Averaging time (s),Allan deviation (deg/s)", 1.2),
+        ("time_s,gx", 1.5),
+        ("", 1.3),
+    ] {
+        for options in [Options::default(), told.clone()] {
+            let line = read_text(&curve(names, factor), &options).unwrap_err();
+            assert_eq!(
+                line,
+                "a.csv: this is a curve of deviations over averaging times, not a log of samples; give the log that it was computed from"
+            );
+        }
+    }
+}
+
 /// The samples and the rate of a log whose stamps are cut to whole milliseconds.
 fn cut_to_milliseconds(rate_hz: f64, phase: f64, rows: u32) -> Log {
     let mut random = Xoshiro256PlusPlus::seed_from_u64(5);

@@ -14,7 +14,7 @@ use allanite::{
     diagnosis::{Options, Step},
     spectrum::Spectrum,
 };
-use allanite_log::{self as log, BINS, OCTAVES, is_degrees_column, unit::Unit};
+use allanite_log::{self as log, BINS, OCTAVES, failure::plural, is_degrees_column, unit::Unit};
 use serde::Serialize;
 
 /// A covariate that was tried.
@@ -41,6 +41,8 @@ enum Found {
     SameAs(String),
     /// What it does is a part of what another covariate of the same column does.
     PartOf(String),
+    /// It changes in so many steps, which are too few to tell that the rate does not follow what is between them.
+    Seldom(usize),
     /// It never changes.
     Constant,
 }
@@ -140,7 +142,10 @@ pub fn tried(
             let is_alone = followed.is_none() && matches!(candidate.form, Form::Itself);
             is_alone.then(|| candidates.bound(curve, at, noise))?
         };
-        slope.map_or(Found::Constant, |slope| Found::Nothing(slope, bound()))
+        slope.map_or(Found::Constant, |slope| match candidate.seldom {
+            Some(steps) => Found::Seldom(steps),
+            None => Found::Nothing(slope, bound()),
+        })
     };
     let all = candidates.all.iter().enumerate();
     let told = all.filter(|(at, candidate)| match candidate.form {
@@ -230,6 +235,14 @@ impl TriedCovariate {
                 )
             }
             Found::PartOf(other) => format!("{channel}: the rate follows {other} instead"),
+            Found::Seldom(steps) => {
+                let steps = plural(*steps as u64, "step");
+                let what = match form {
+                    Form::Itself => "",
+                    _ => "its column ",
+                };
+                format!("{channel}: {what}changes in {steps}, too few to exclude a dependence")
+            }
             Found::Constant => format!("{channel}: never changes"),
         }
     }
@@ -241,7 +254,9 @@ impl TriedCovariate {
             Found::Nothing(slope, bound) => (Some(slope), None, bound.as_ref()),
             Found::NothingBeside(slope, _) => (Some(slope), None, None),
             Found::ActsBehind(lag) => (Some(&lag.slope), Some(lag.as_ref()), None),
-            Found::SameAs(_) | Found::PartOf(_) | Found::Constant => (None, None, None),
+            Found::SameAs(_) | Found::PartOf(_) | Found::Seldom(_) | Found::Constant => {
+                (None, None, None)
+            }
         };
         let interval = slope.map(Slope::interval);
         Document {

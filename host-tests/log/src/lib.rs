@@ -191,7 +191,7 @@ pub use cuts::{Cuts, Moment, TimeRange};
 pub use faults::{rate_of, said as repeats_said};
 pub use file::{read, read_for_page, read_in_two, read_part, read_with_evidence};
 pub use names::TimeUnit;
-pub use names::is_degrees_column;
+pub use names::{is_degrees_column, is_temperature};
 pub use octaves::accumulate;
 pub use places::Places;
 pub use row_choice::RowChoice;

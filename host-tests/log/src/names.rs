@@ -108,7 +108,7 @@ pub(super) fn is_increment(name: &str) -> bool {
 }
 
 /// Whether a column is named like a temperature: `temp_C`, `gyro.temperature`, `IMUTemp`, `t [°C]`.
-pub(super) fn is_temperature(name: &str) -> bool {
+pub fn is_temperature(name: &str) -> bool {
     let text = name.trim().to_lowercase();
     let others = ["attempt", "template", "temporal", "tempo_"];
     let is_other = others.iter().any(|other| text.contains(other));

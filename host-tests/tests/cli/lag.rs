@@ -165,3 +165,36 @@ fn a_record_is_stationary_beside_what_follows_the_temperature() {
         assert_eq!(blind["axes"][0]["verdict"], NOT_STATIONARY, "{lag_s}");
     }
 }
+
+/// A thermometer in whole degrees is known where it changes, which is four times in this record. What the rate follows between
+/// these steps is not excluded, and no lag is told.
+#[test]
+fn few_steps_of_a_thermometer_exclude_no_dependence_and_tell_no_lag() {
+    for (slope, steps, seed) in [
+        (0.02, 1.0, 1),
+        (0.02, 1.0, 2),
+        (0.0, 1.0, 3),
+        (0.0, 0.05, 4),
+    ] {
+        let folder = TempDir::new().unwrap();
+        let mut random = Random::seed_from_u64(seed);
+        let mut text = "# rate_hz=2\n# unit=deg/s\ngyro_z,temp_C\n".to_owned();
+        for n in 0..4800 {
+            let t = f64::from(n) / 2.0;
+            let celsius = 24.8 + 4.0 * t / 2400.0 + 0.1 * (2.0 * PI * t / 800.0).sin();
+            let noise: [f64; 2] = [(); 2].map(|()| random.sample(StandardNormal));
+            let rate = slope * celsius + 0.007 * noise[0];
+            let told = ((celsius + 0.02 * noise[1]) / steps).round() * steps;
+            writeln!(text, "{rate:.6},{told:.2}").unwrap();
+        }
+        fs::write(folder.path().join("log.csv"), text).unwrap();
+        let text = output(folder.path(), &["fit", "log.csv"]);
+        let what = format!("{slope} {steps}: {text}");
+        assert!(!text.contains("with a lag of"), "{what}");
+        let excludes = text.contains("temp_C: no dependence above");
+        assert_eq!(excludes, steps < 1.0, "{what}");
+        let seldom = "temp_C: changes in 4 steps, too few to exclude a dependence";
+        let follows = text.contains("temp_C: the rate follows it");
+        assert_eq!(text.contains(seldom) || follows, steps == 1.0, "{what}");
+    }
+}

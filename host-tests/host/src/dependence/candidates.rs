@@ -5,6 +5,7 @@ use super::{
     lag::{Found, Lag, Record, Search, Unresolved},
     noise::Noise,
     series::{lagged, mean, rate_of_change, squared},
+    steps::seldom,
 };
 use allanite::{
     Curve, Error, Model,
@@ -12,7 +13,7 @@ use allanite::{
     diagnosis::FollowedCovariate,
     spectrum::Spectrum,
 };
-use allanite_log::{BINS, Evidence, OCTAVES, block_means::BlockMeans};
+use allanite_log::{BINS, Evidence, OCTAVES, block_means::BlockMeans, is_temperature};
 
 /// How a series is formed from its column.
 #[derive(Clone, Debug)]
@@ -45,6 +46,8 @@ pub struct Candidate {
     pub asked: bool,
     /// Lags that are not excluded, of a column as it is.
     pub unresolved: Option<Unresolved>,
+    /// The steps in which its column changes, if they are so few that no lag and no absence of a dependence is told.
+    pub seldom: Option<usize>,
 }
 
 /// What bounds a dependence on a column that does not show: the error of the amplitude of the rate per unit of the
@@ -97,6 +100,7 @@ impl Candidates {
                 form: inner.map_or(Form::Itself, |_| Form::RateOfChange),
                 asked: true,
                 unresolved: None,
+                seldom: None,
             }
         });
         let crosses = evidence.covariates.iter().map(|(_, cross)| cross.clone());
@@ -230,18 +234,26 @@ impl Candidates {
                     form: Form::RateOfChange,
                     asked: false,
                     unresolved: None,
+                    seldom: None,
                 };
                 self.add(candidate, of_change)
             }
         };
         self.pairs.retain(|pair| pair.covariates != [at, rate]);
+        let seldom = seldom(means).filter(|_| is_temperature(column));
+        for one in [at, rate] {
+            self.all[one].seldom = seldom;
+        }
         let shortest = first_beyond_noise(&self.crosses[at]);
         let search = Search {
             record,
             column: means,
             shortest,
         };
-        let found = search.run(before)?;
+        let found = match seldom {
+            Some(_) => None,
+            None => search.run(before)?,
+        };
         let both = Both::new(record, means, &change, shortest);
         let lag = found.and_then(|found| {
             let Found {
@@ -270,6 +282,7 @@ impl Candidates {
                 form: Form::Behind(Box::new(lag.clone())),
                 asked: false,
                 unresolved: None,
+                seldom: None,
             };
             let behind = self.add(candidate, lag.cross);
             let series = lagged(means, lag_s / record.means.block_s);
@@ -305,6 +318,7 @@ impl Candidates {
             form: Form::Square { centre, lag_s },
             asked: false,
             unresolved: None,
+            seldom: None,
         };
         let cross = record.cross(&square, 1);
         let square_at = self.add(candidate, cross);

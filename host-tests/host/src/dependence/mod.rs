@@ -11,3 +11,4 @@ pub mod cross;
 pub mod lag;
 pub mod noise;
 pub mod series;
+pub mod steps;

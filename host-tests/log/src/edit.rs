@@ -25,8 +25,20 @@ pub(super) struct Kept {
 
 impl Kept {
     fn has(&self, line: &[u8]) -> bool {
-        let record = self.dialect.fields(line);
-        let Some(field) = record.get(self.column).map(<[u8]>::trim_ascii) else {
+        let is_plain = !line.contains(&b'"');
+        let record;
+        let field = match self.dialect.separator_of_points().filter(|_| is_plain) {
+            Some(b' ') => {
+                let words = line.split(u8::is_ascii_whitespace);
+                words.filter(|word| !word.is_empty()).nth(self.column)
+            }
+            Some(separator) => line.split(|&byte| byte == separator).nth(self.column),
+            None => {
+                record = self.dialect.fields(line);
+                record.get(self.column)
+            }
+        };
+        let Some(field) = field.map(<[u8]>::trim_ascii) else {
             return false;
         };
         let number = |text: &[u8]| Text(text).number().ok();

@@ -385,9 +385,10 @@ fn series(candidate: &Candidate, means: &BlockMeans) -> Option<Vec<f64>> {
     })
 }
 
-/// A lag in words.
+/// A lag in words, to two digits. That of no lag is 0 s, whose logarithm is not finite.
 pub fn seconds(lag_s: f64) -> String {
-    let digits = (1.0 - lag_s.log10().floor()).max(0.0) as usize;
+    let digits = (1.0 - lag_s.log10().floor()).clamp(0.0, 12.0) as usize;
+    let digits = if lag_s > 0.0 { digits } else { 0 };
     format!("{lag_s:.digits$} s")
 }
 
@@ -429,5 +430,20 @@ impl Both {
             false => alone[0].max(alone[1]),
         };
         Explained { alone, together }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lags_of_any_size_have_words() {
+        let lags = [0.0, 1e-300, 0.0123, 2.64, 28.4, 1234.5, f64::INFINITY];
+        let words = lags.map(seconds);
+        assert_eq!(
+            words,
+            ["0 s", "0.000000000000 s", "0.012 s", "2.6 s", "28 s", "1234 s", "inf s"]
+        );
     }
 }

@@ -10,3 +10,4 @@ pub mod motion;
 pub(crate) mod observed;
 mod reads;
 pub(crate) mod record;
+mod screen;

@@ -16,6 +16,8 @@ pub use limits::{InvalidLimit, Limits};
 pub use observation::Observation;
 pub use reason::Reason;
 
+pub use super::screen::Screen;
+
 use state::{CLUSTERS, State};
 
 /// Watches the counts of an [`Accumulator`](crate::Accumulator), in fixed memory and integers only,

@@ -14,4 +14,5 @@ pub(crate) mod lags;
 pub mod octave;
 pub mod queue;
 pub(crate) mod reads;
+pub(crate) mod screen;
 pub(crate) mod square_sum;

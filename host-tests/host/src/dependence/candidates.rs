@@ -443,7 +443,15 @@ mod tests {
         let words = lags.map(seconds);
         assert_eq!(
             words,
-            ["0 s", "0.000000000000 s", "0.012 s", "2.6 s", "28 s", "1234 s", "inf s"]
+            [
+                "0 s",
+                "0.000000000000 s",
+                "0.012 s",
+                "2.6 s",
+                "28 s",
+                "1234 s",
+                "inf s"
+            ]
         );
     }
 }

@@ -68,7 +68,7 @@
 //! | [`axis`] | rejects stuck or saturated samples (at a rail), spikes and motion, and records all others |
 //! | [`octave`] | is the accumulator: overlapping differences of adjacent clusters, a quarter apart, exact in 158 bits |
 //! | [`spectrum`] | measures power spectral densities, and computes those of each effect |
-//! | [`integrity`] | decides whether the record is one of a gyro at rest |
+//! | [`integrity`] | decides whether the record is one of a gyro at rest; `Screen` does so in 2 KB of flash |
 //! | [`motion`] | recognises a gyro that was held, carried or swung for the whole record |
 //! | [`faults`] | detects faults of the logger: repeated samples, stuck values, saturation (clipping), a dead band |
 //! | [`kurtosis`], [`covariate`] | detect jumps of the rate, and its dependence on a temperature, with its lag |

@@ -6,7 +6,7 @@ use crate::check::{
     panic_paths,
 };
 use rayon::prelude::*;
-use xtask::firmware::{CORES, CORTEX_M4F, RISCV, Way, budgets};
+use xtask::firmware::{CORES, CORTEX_M4F, Image, RISCV, Way, budgets};
 
 #[test]
 fn three_cores_and_the_host_agree_to_the_bit() {
@@ -27,6 +27,22 @@ fn a_sample_and_a_fit_cost_on_the_smallest_core_what_the_budgets_say() {
     // The budgets are those of rustup's toolchain.
     if Way::in_use().unwrap_or_else(|error| panic!("{error:#}")) == Way::Rustup {
         budgets::check_core(&CORES[0]).unwrap_or_else(|error| panic!("{error:#}"));
+    }
+}
+
+#[test]
+fn the_five_terms_with_a_screen_fit_into_19_kib_of_the_smallest_core() {
+    let of = |name| {
+        let image = Image::build_for(name, &CORES[0]);
+        image.and_then(|image| image.flash_bytes())
+    };
+    let [alone, screened] = ["footprint_five_terms", "footprint_screened"]
+        .map(|name| of(name).unwrap_or_else(|error| panic!("{error:#}")));
+    println!("{alone} bytes of flash, {screened} with a screen");
+    assert!(alone < screened);
+    // Debian's `core` is compiled for size.
+    if Way::in_use().unwrap_or_else(|error| panic!("{error:#}")) == Way::Rustup {
+        assert!(screened <= 19 << 10, "{screened}");
     }
 }
 

@@ -2,9 +2,9 @@
 
 use super::{RATE_HZ, UNIT, simulated::Rows};
 use allanite::{
-    Axes, Scale,
+    Accumulator, Axes, Scale,
     axis::{CoursePart, Courses, GatePart, Gated, MomentPart, Moments},
-    integrity::Reason,
+    integrity::{Reason, Screen},
     spectrum::{Spectral, SpectrumReading},
 };
 use std::{fs::File, path::Path, process::Command};
@@ -44,6 +44,20 @@ pub(super) fn with_gate(rows: &Rows) -> Said {
     let mut axes = Axes::<20, 1, Gated, Moments, 3, Spectral<64, 7, 140>, Courses>::new();
     rows.iter().for_each(|&row| axes.push((row, [0])));
     said(axes, [1.0])
+}
+
+/// What a core with little flash says, which keeps a screen of each axis beside its accumulator.
+pub(super) fn by_screens(rows: &Rows) -> &'static str {
+    let scale = Scale::new(UNIT as _, RATE_HZ as _).unwrap();
+    let of_axis = |axis: usize| {
+        let (mut accumulator, mut screen) = (Accumulator::<14>::new(), Screen::new());
+        for row in rows {
+            accumulator.push(row[axis]);
+            screen.push(row[axis]);
+        }
+        screen.verdict(&accumulator.curve(scale), scale)
+    };
+    name([0, 1, 2].into_iter().find_map(of_axis))
 }
 
 fn said<const C: usize, G: GatePart, M: MomentPart, S: SpectrumReading, T: CoursePart>(

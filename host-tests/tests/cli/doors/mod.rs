@@ -175,3 +175,8 @@ fn a_record_is_judged_alike_by_every_door() {
 fn a_device_distinguishes_rest_from_what_happens_to_it() {
     Truth::of(20, 1, 2_000..30_000).assert();
 }
+
+#[test]
+fn a_small_core_sees_motion_stuck_values_and_repeats() {
+    Truth::by_screens(20, 3, 2_000..30_000).assert_screened();
+}

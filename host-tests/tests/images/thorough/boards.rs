@@ -21,13 +21,13 @@ const BARS: [Bars; 2] = [
         flash_bytes: 150 << 10,
         ram_bytes: 32 << 10,
     },
-    // Statics and stack share 6 KiB. The largest stack has 3256 bytes: the frames of the image, added up along its calls.
+    // Statics and stack share 6 KiB. The largest stack has 3404 bytes: the frames of the image, added up along its calls.
     Bars {
         name: "stm32g030",
         ram_end: 0x2000_2000,
         flash: 0x0800_0000..0x0800_8000,
-        flash_bytes: 24 << 10,
-        ram_bytes: (6 << 10) - 3256,
+        flash_bytes: 26 << 10,
+        ram_bytes: (6 << 10) - 3404,
     },
 ];
 

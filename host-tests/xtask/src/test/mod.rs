@@ -24,10 +24,11 @@ const IMAGES: [&str; 1] = ["characterise"];
 /// Those that need more RAM than the smallest core has.
 const LARGE_IMAGES: [&str; 1] = ["product"];
 /// Those that are measured on the smallest core.
-const MEASURED_IMAGES: [&str; 4] = [
+const MEASURED_IMAGES: [&str; 5] = [
     "bench",
     "footprint_fit",
     "footprint_five_terms",
+    "footprint_screened",
     "footprint_self_test",
 ];
 /// Those that are examined on one core.

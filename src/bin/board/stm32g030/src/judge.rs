@@ -4,6 +4,7 @@ use crate::{OCTAVES, Verdict};
 use allanite::{
     Accumulator, Curve, Scale,
     ieee_952::{self, Checked, Fit, Limits},
+    integrity::Screen,
     sensor::LSM6DSO,
 };
 
@@ -15,17 +16,22 @@ const LIMITS: [f32; ieee_952::TERMS] = [f32::INFINITY, 0.0054, 0.005, f32::INFIN
 // The curve stays where it is while the fit reads it: each function hands a result on by reference, which saves half a
 // kilobyte of stack.
 #[inline(never)]
-pub fn judge(gyro: &Accumulator<OCTAVES>) -> Verdict {
-    match &curve(gyro) {
-        Some(curve) => judge_curve(curve),
+pub fn judge(gyro: &Accumulator<OCTAVES>, screen: &Screen) -> Verdict {
+    let Some(scale) = Scale::new(LSM6DSO.scale_dps, LSM6DSO.rate_hz).ok() else {
+        return Verdict::NoFit;
+    };
+    match &curve(gyro, scale) {
+        Some(curve) => match screen.verdict(curve, scale) {
+            Some(reason) => Verdict::Invalid(reason.name()),
+            None => judge_curve(curve),
+        },
         None => Verdict::NoFit,
     }
 }
 
 /// The Allan curve of a record in which no gap was filled, because the station calls [`Accumulator::gap`] for lost samples.
 #[inline(never)]
-fn curve(gyro: &Accumulator<OCTAVES>) -> Option<Curve<OCTAVES>> {
-    let scale = Scale::new(LSM6DSO.scale_dps, LSM6DSO.rate_hz).ok()?;
+fn curve(gyro: &Accumulator<OCTAVES>, scale: Scale) -> Option<Curve<OCTAVES>> {
     gyro.unbridged_curve(scale)
 }
 

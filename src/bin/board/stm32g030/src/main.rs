@@ -10,6 +10,7 @@ mod judge;
 
 use allanite::{
     Accumulator,
+    integrity::Screen,
     sensor::{Imu, LSM6DSO},
 };
 use board::{Board, Bus, Display};
@@ -47,6 +48,8 @@ enum Verdict {
     Fail(&'static str),
     /// The limit of this coefficient lies within its interval.
     Undecided(&'static str),
+    /// The record is not one of a gyro at rest, and why: `moved`, `stuck`, `repeated`, `spiked` or `coarse`.
+    Invalid(&'static str),
     /// The five terms do not explain the record.
     Misfit,
     /// The record cannot be fitted.
@@ -89,11 +92,12 @@ fn station(
     gyro: &mut Accumulator<OCTAVES>,
 ) -> Verdict {
     let mut samples = FIRST;
+    let mut screen = Screen::new();
     loop {
-        if let Err(verdict) = record(imu, ready, clock, gyro, samples) {
+        if let Err(verdict) = record(imu, ready, clock, (gyro, &mut screen), samples) {
             return verdict;
         }
-        let verdict = judge::judge(gyro);
+        let verdict = judge::judge(gyro, &screen);
         if samples >= LAST || !matches!(verdict, Verdict::Undecided(_)) {
             return verdict;
         }
@@ -115,11 +119,12 @@ fn record(
     imu: &mut Imu<&mut Bus>,
     ready: &Input<'_>,
     clock: &mut Clock,
-    gyro: &mut Accumulator<OCTAVES>,
+    (gyro, screen): (&mut Accumulator<OCTAVES>, &mut Screen),
     until: u64,
 ) -> Result<(), Verdict> {
     // Samples were lost while the record was judged.
     gyro.gap();
+    screen.gap();
     let (mut elapsed, mut expected) = (0, 0);
     clock.restart();
     while gyro.samples() < until {
@@ -136,8 +141,10 @@ fn record(
         let since = clock.restart();
         if since > INTERVAL + INTERVAL / 2 {
             gyro.gap();
+            screen.gap();
         }
         gyro.push(reading.gyro[AXIS]);
+        screen.push(reading.gyro[AXIS]);
         elapsed += u64::from(since);
         expected += u64::from(INTERVAL);
     }
@@ -154,6 +161,7 @@ fn show(verdict: &Verdict, display: &mut Display) {
         Verdict::Pass => ("pass", ""),
         Verdict::Fail(name) => ("fail: ", *name),
         Verdict::Undecided(name) => ("undecided: ", *name),
+        Verdict::Invalid(name) => ("no record of a gyro at rest: ", *name),
         Verdict::Misfit => ("the five terms do not explain the record", ""),
         Verdict::NoFit => ("the record cannot be fitted", ""),
         Verdict::NoSensor => ("no LSM6DSO answers", ""),

@@ -77,8 +77,8 @@ impl Observer for Completed {
 /// What is updated together with the accumulator of a covariate: its differences, and their products with those of the covariate
 /// before it.
 struct Neighbours<'a, const OCTAVES: usize> {
-    completed: Completed,
-    before: Option<Completed>,
+    completed: &'a mut Completed,
+    before: &'a Completed,
     between: &'a mut CrossSums<OCTAVES>,
 }
 
@@ -86,9 +86,7 @@ impl<const OCTAVES: usize> Observer for Neighbours<'_, OCTAVES> {
     #[inline(always)]
     fn observe(&mut self, octave: usize, difference: i64) {
         self.completed.observe(octave, difference);
-        if let Some(before) = self.before {
-            self.between.add(octave, before.of(octave), difference);
-        }
+        self.between.add(octave, self.before.of(octave), difference);
     }
 }
 
@@ -222,16 +220,21 @@ where
         let mut completed = [Completed([0; 4]); COVARIATES];
         let covariates = self.covariates.iter_mut().zip(&sample.covariates);
         let sums = completed.iter_mut().zip(&mut self.between);
-        let mut before = None;
-        for ((covariate, &count), (completed, between)) in covariates.zip(sums) {
+        let mut covariates = covariates.zip(sums);
+        // A single covariate pays nothing for pairs.
+        let mut before = Completed([0; 4]);
+        if let Some(((covariate, &count), (completed, _))) = covariates.next() {
+            covariate.push_observed(count, completed);
+            before = *completed;
+        }
+        for ((covariate, &count), (completed, between)) in covariates {
             let mut neighbours = Neighbours {
-                completed: *completed,
-                before,
+                completed: &mut *completed,
+                before: &before,
                 between,
             };
             covariate.push_observed(count, &mut neighbours);
-            *completed = neighbours.completed;
-            before = Some(*completed);
+            before = *completed;
         }
         for (axis, &count) in self.axes.iter_mut().zip(&sample.counts) {
             axis.push(count, &completed);

@@ -218,16 +218,31 @@ where
             axis.spectrum.push(count);
         }
         let mut completed = [Completed([0; 4]); COVARIATES];
-        let covariates = self.covariates.iter_mut().zip(&sample.covariates);
-        let sums = completed.iter_mut().zip(&mut self.between);
-        let mut covariates = covariates.zip(sums);
-        // A single covariate pays nothing for pairs.
-        let mut before = Completed([0; 4]);
-        if let Some(((covariate, &count), (completed, _))) = covariates.next() {
-            covariate.push_observed(count, completed);
-            before = *completed;
+        if COVARIATES > 1 {
+            completed = self.push_neighbours(sample.covariates);
+        } else {
+            let covariates = self.covariates.iter_mut().zip(&sample.covariates);
+            for ((covariate, &count), completed) in covariates.zip(&mut completed) {
+                covariate.push_observed(count, completed);
+            }
         }
-        for ((covariate, &count), (completed, between)) in covariates {
+        for (axis, &count) in self.axes.iter_mut().zip(&sample.counts) {
+            axis.push(count, &completed);
+        }
+        self.make_room();
+    }
+
+    /// Adds the counts of several covariates, and their products with their neighbours. A single covariate, or none, needs no more than its
+    /// own sums.
+    #[inline(never)]
+    fn push_neighbours(&mut self, counts: [i32; COVARIATES]) -> [Completed; COVARIATES] {
+        let mut completed = [Completed([0; 4]); COVARIATES];
+        let sums = self.covariates.iter_mut().zip(&mut self.between);
+        // What the first one adds to its sum of products is zero.
+        let mut before = Completed([0; 4]);
+        for ((covariate, between), (count, completed)) in
+            sums.zip(counts.into_iter().zip(&mut completed))
+        {
             let mut neighbours = Neighbours {
                 completed: &mut *completed,
                 before: &before,
@@ -236,10 +251,7 @@ where
             covariate.push_observed(count, &mut neighbours);
             before = *completed;
         }
-        for (axis, &count) in self.axes.iter_mut().zip(&sample.counts) {
-            axis.push(count, &completed);
-        }
-        self.make_room();
+        completed
     }
 
     /// Transforms a segment of an axis of which half of the room for counts is taken. The axes take turns, so

@@ -15,10 +15,22 @@ use tempfile::TempPath;
 pub(super) const MOST_TEXT: u64 = 1 << 24;
 pub(super) const MOST_TIMES: u64 = 100;
 
+/// How a note begins on what is in a log and cannot be read. It explains a refusal of the rest.
+pub(super) const LEFT_OUT: &str = "left out: ";
+
 /// A text that is deleted when this is dropped.
 pub(super) struct Converted {
     pub(super) text: TempPath,
     pub(super) note: Option<String>,
+}
+
+impl Converted {
+    /// The note on what is left out, without what it says of the rest.
+    #[cfg(any(feature = "bags", feature = "tables"))]
+    pub(super) fn left_out(&self) -> Option<&str> {
+        let note = self.note.as_deref()?;
+        note.find(LEFT_OUT).map(|place| &note[place..])
+    }
 }
 
 /// A text of bounded length that is being written.

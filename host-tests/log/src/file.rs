@@ -225,8 +225,15 @@ fn read_converted(
     wanted: (Option<u64>, Option<Watched>),
     progress: &ProgressBar,
 ) -> Result<(Log, Vec<Axis>), Failure> {
-    let text = csv::Csv::open_as(path, &table.text, false, options.rows.as_ref())?;
-    let (mut log, rest) = read_table(&text, path, options, wanted, progress)?;
+    // What was left out may be what is missing.
+    let explained = |failure: Failure| match table.left_out() {
+        Some(left_out) => failure.and(left_out),
+        None => failure,
+    };
+    let text = csv::Csv::open_as(path, &table.text, false, options.rows.as_ref());
+    let text = text.map_err(explained)?;
+    let read = read_table(&text, path, options, wanted, progress);
+    let (mut log, rest) = read.map_err(explained)?;
     log.notes.extend(table.note.clone());
     Ok((log, rest))
 }

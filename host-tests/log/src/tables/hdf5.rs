@@ -2,13 +2,16 @@
 
 use super::{
     arrays::{self, Array, Values},
+    hdf5_left_out::LeftOut,
+    hdf5_links,
+    hdf5_lowest::Lowest,
     wrong::Wrong,
 };
 use crate::{
     converted::{MOST_TEXT, MOST_TIMES, Text},
     unit_names::{are_units, with_unit},
 };
-use hdf5_pure::{AttrValue, DType, Dataset, Error, File, Group};
+use hdf5_pure::{AttrValue, DType, Dataset, Error, File, FormatError, Group};
 use std::{collections::HashMap, path::Path};
 
 /// How deep groups are looked into, and how many datasets are looked at. Chosen by hand.
@@ -22,48 +25,125 @@ pub(super) fn convert(
 ) -> Result<Option<String>, Wrong> {
     let size = path.metadata()?.len();
     let file = File::open_streaming(path).map_err(Wrong::damaged)?;
-    let mut arrays = Vec::new();
-    gather(&file.root(), "", size, 0, &mut arrays).map_err(Wrong::damaged)?;
-    arrays::write(arrays, topic, text)
+    let mut found = Found {
+        path,
+        size,
+        arrays: Vec::new(),
+        left_out: LeftOut::default(),
+        lowest: Lowest::default(),
+    };
+    found
+        .gather(&file.root(), "", DEEPEST)
+        .map_err(Wrong::damaged)?;
+    let left_out = found.left_out.note();
+    if found.arrays.is_empty()
+        && let Some(wrong) = found.left_out.refusal()
+    {
+        return Err(wrong);
+    }
+    let note =
+        arrays::write(found.arrays, topic, text).map_err(|wrong| match (wrong, &left_out) {
+            (Wrong::Unfit(what, remedy), Some(left_out)) => {
+                Wrong::unfit(format!("{what}, and {left_out}"), remedy)
+            }
+            (wrong, _) => wrong,
+        })?;
+    let notes: Vec<String> = [note, found.lowest.note(), left_out]
+        .into_iter()
+        .flatten()
+        .collect();
+    Ok((!notes.is_empty()).then(|| notes.join("; ")))
 }
 
-/// Collects the datasets of numbers in a group and in those within it.
-fn gather(
-    group: &Group,
-    place: &str,
+/// What a file holds.
+struct Found<'a> {
+    path: &'a Path,
     size: u64,
-    depth: usize,
-    arrays: &mut Vec<Array>,
-) -> Result<(), Error> {
-    for name in group.datasets()? {
-        if arrays.len() >= MOST {
-            return Ok(());
+    arrays: Vec<Array>,
+    left_out: LeftOut,
+    lowest: Lowest,
+}
+
+impl Found<'_> {
+    /// Collects the datasets of numbers in a group and in those within it.
+    fn gather(&mut self, group: &Group, place: &str, levels: usize) -> Result<(), Error> {
+        let (datasets, groups) = self.names(group, place)?;
+        for name in datasets {
+            if self.arrays.len() >= MOST {
+                return Ok(());
+            }
+            let here = format!("{place}/{name}");
+            match group.dataset(&name) {
+                Ok(dataset) => match self.array(&dataset, place, &name) {
+                    Ok(array) => self.arrays.extend(array),
+                    Err(error) => self.left_out.dataset(here, Some(&dataset), &error),
+                },
+                Err(error) => self.left_out.dataset(here, None, &error),
+            }
         }
-        let dataset = group.dataset(&name)?;
+        if levels > 0 {
+            // MATLAB keeps what its cells refer to in groups whose names begin with #.
+            for name in groups.iter().filter(|name| !name.starts_with('#')) {
+                let place = format!("{place}/{name}");
+                self.gather(&group.group(name)?, &place, levels - 1)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The names of the datasets and of the groups in a group.
+    fn names(&mut self, group: &Group, place: &str) -> Result<(Vec<String>, Vec<String>), Error> {
+        let listed = group
+            .datasets()
+            .and_then(|names| Ok((names, group.groups()?)));
+        let error = match listed {
+            Ok(names) => return Ok(names),
+            // The undefined address of the object of a soft link, plus what precedes HDF5 in the file.
+            Err(error @ Error::Format(FormatError::OffsetOverflow { .. })) => error,
+            Err(error) => return Err(error),
+        };
+        let Some(links) = hdf5_links::of(self.path, place) else {
+            return Err(error);
+        };
+        for (name, to) in links.soft {
+            self.left_out.link(format!("{place}/{name}"), to);
+        }
+        let (mut datasets, mut groups) = (Vec::new(), Vec::new());
+        for name in links.objects {
+            match group.dataset(&name) {
+                Err(Error::NotADataset(_)) if group.group(&name).is_ok() => groups.push(name),
+                Err(Error::NotADataset(_)) => {}
+                Ok(_) | Err(_) => datasets.push(name),
+            }
+        }
+        Ok((datasets, groups))
+    }
+
+    /// A dataset of numbers as an array.
+    fn array(
+        &mut self,
+        dataset: &Dataset,
+        place: &str,
+        name: &str,
+    ) -> Result<Option<Array>, Error> {
         let shape = dataset.shape()?;
         // A damaged file may claim any size.
         let claimed = shape
             .iter()
             .try_fold(8_u64, |all, &length| all.checked_mul(length));
-        if claimed.is_none_or(|bytes| bytes > MOST_TIMES * size + MOST_TEXT) {
-            continue;
+        if claimed.is_none_or(|bytes| bytes > MOST_TIMES * self.size + MOST_TEXT) {
+            return Ok(None);
         }
-        let Some(values) = values(&dataset)? else {
-            continue;
+        let Some(values) = values(dataset)? else {
+            return Ok(None);
         };
+        self.lowest
+            .look(&format!("{place}/{name}"), dataset, &values);
         let conventions = Conventions::of(&dataset.attrs()?);
-        let (name, values) = (conventions.named(&name), conventions.applied(values));
+        let (name, values) = (conventions.named(name), conventions.applied(values));
         let shape: Vec<usize> = shape.iter().map(|&length| length as usize).collect();
-        arrays.extend(Array::new(place.to_owned(), name, &shape, false, values));
+        Ok(Array::new(place.to_owned(), name, &shape, false, values))
     }
-    if depth < DEEPEST {
-        // MATLAB keeps what its cells refer to in groups whose names begin with #.
-        for name in group.groups()?.iter().filter(|name| !name.starts_with('#')) {
-            let place = format!("{place}/{name}");
-            gather(&group.group(name)?, &place, size, depth + 1, arrays)?;
-        }
-    }
-    Ok(())
 }
 
 /// What the attributes of a dataset say of its numbers, by the conventions for climate and forecast metadata (CF, section 2.5.1 and

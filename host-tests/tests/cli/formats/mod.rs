@@ -4,6 +4,7 @@ mod above;
 mod around;
 mod broken;
 mod cases;
+mod hdf5;
 mod layouts;
 mod origins;
 mod rounded;

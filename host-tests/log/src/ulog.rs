@@ -1,4 +1,5 @@
-//! Reads logs of PX4. The messages of one instance of a topic form the table.
+//! Reads logs of PX4. The messages of one instance of a topic form the table, whichever of its subscriptions they are of: each
+//! subscription has a number of its own, and a logger may end one and begin another.
 
 use super::{
     Options,
@@ -16,7 +17,7 @@ use crate::{
 };
 use indicatif::ProgressBar;
 use std::{
-    collections::BTreeMap,
+    collections::{BTreeMap, BTreeSet},
     path::{Path, PathBuf},
 };
 
@@ -26,7 +27,7 @@ const LOOKS: usize = 100;
 /// A log, and the topic in it that is read.
 pub(super) struct Ulog {
     path: PathBuf,
-    identity: u16,
+    identities: BTreeSet<u16>,
     sources: Vec<Source>,
     metadata: Metadata,
     columns: Columns,
@@ -36,6 +37,8 @@ pub(super) struct Ulog {
 /// An instance of a topic in a log.
 struct Found {
     subscription: Subscription,
+    /// The numbers of its subscriptions.
+    identities: BTreeSet<u16>,
     messages: u64,
 }
 
@@ -72,16 +75,7 @@ impl Ulog {
                 Place::file(path).failure("the file ends before its first data message", COPY)
             );
         }
-        let mut found = BTreeMap::new();
-        for (identity, subscription) in std::mem::take(&mut log.subscriptions) {
-            if let Some(&messages) = counts.get(&identity) {
-                let one = Found {
-                    subscription,
-                    messages,
-                };
-                found.insert(identity, one);
-            }
-        }
+        let found = instances(std::mem::take(&mut log.subscriptions), &counts);
         // Formats can be long. Only those of raw topics, of which there are few, and that of the chosen
         // topic are expanded.
         let expanded = |topic: &str| {
@@ -91,7 +85,7 @@ impl Ulog {
         };
         let mut raw = BTreeMap::new();
         for topic in RAW {
-            if found.values().any(|one| one.subscription.topic == topic) {
+            if found.iter().any(|one| one.subscription.topic == topic) {
                 let columns = expanded(topic)?;
                 let names: Vec<String> = columns.into_iter().map(|(name, _)| name).collect();
                 let defined = defined(topic, &names);
@@ -106,15 +100,12 @@ impl Ulog {
                     Sensor::Accelerometer => *accelerometer,
                 })
         };
-        let identity = choose(path, &found, options, has)?;
+        let chosen = choose(path, &found, options, has)?;
         let others: Vec<String> = found
             .iter()
-            .filter(|(other, one)| **other != identity && is_raw(one))
-            .map(|(_, one)| format!("{} ({})", one.name(), plural(one.messages, "message")))
+            .filter(|one| one.identities != chosen.identities && is_raw(one))
+            .map(|one| format!("{} ({})", one.name(), plural(one.messages, "message")))
             .collect();
-        let Some(chosen) = found.remove(&identity) else {
-            return Err(Place::file(path).failure("no messages", "record some samples"));
-        };
         let mut note = format!(
             "topic {} of {}",
             chosen.name(),
@@ -130,7 +121,7 @@ impl Ulog {
         drop(log);
         let mut log = Self {
             path: path.to_owned(),
-            identity,
+            identities: chosen.identities.clone(),
             metadata: Metadata::default(),
             columns: Columns {
                 looks: vec![Look::Number; names.len()],
@@ -173,7 +164,7 @@ impl Ulog {
         let mut log = Messages::open(file).map_err(fail)?;
         let mut row = 0;
         while let Message::Data(identity, bytes) = log.next().map_err(fail)? {
-            if identity == self.identity {
+            if self.identities.contains(&identity) {
                 row += 1;
                 if !show(row, bytes)? {
                     break;
@@ -244,24 +235,49 @@ fn is_raw(found: &Found) -> bool {
     RAW.contains(&found.subscription.topic.as_str())
 }
 
+/// The instances of topics with messages, in the order of the numbers of their subscriptions.
+fn instances(
+    subscriptions: BTreeMap<u16, Subscription>,
+    counts: &BTreeMap<u16, u64>,
+) -> Vec<Found> {
+    let mut found: Vec<Found> = Vec::new();
+    let mut places: BTreeMap<(String, u8), usize> = BTreeMap::new();
+    for (identity, subscription) in subscriptions {
+        let Some(&messages) = counts.get(&identity) else {
+            continue;
+        };
+        let name = (subscription.topic.clone(), subscription.instance);
+        let place = *places.entry(name).or_insert(found.len());
+        if place == found.len() {
+            found.push(Found {
+                subscription,
+                identities: BTreeSet::new(),
+                messages: 0,
+            });
+        }
+        found[place].identities.insert(identity);
+        found[place].messages += messages;
+    }
+    found
+}
+
 /// The topic that is asked for by its name or as `TOPIC:INSTANCE`. Without a request, it is the
 /// topic of raw samples of the sensor with the most messages, provided that only one instance has
 /// that many.
-fn choose(
+fn choose<'a>(
     path: &Path,
-    found: &BTreeMap<u16, Found>,
+    found: &'a [Found],
     options: &Options,
     has: impl Fn(&str, Sensor) -> bool,
-) -> Result<u16, Failure> {
+) -> Result<&'a Found, Failure> {
     let fail = |what: String, remedy: &str| Err(Place::file(path).failure(what, remedy));
-    let list = |found: &[(&u16, &Found)]| {
-        let names: Vec<String> = found.iter().map(|(_, one)| one.name()).collect();
+    let list = |found: &[&Found]| {
+        let names: Vec<String> = found.iter().map(|one| one.name()).collect();
         few(&names)
     };
-    let all: Vec<_> = found.iter().collect();
-    let candidates: Vec<_> = if let Some(wanted) = &options.topic {
-        let is =
-            |(_, one): &(&u16, &Found)| one.subscription.topic == *wanted || one.name() == *wanted;
+    let all: Vec<&Found> = found.iter().collect();
+    let candidates: Vec<&Found> = if let Some(wanted) = &options.topic {
+        let is = |one: &&Found| one.subscription.topic == *wanted || one.name() == *wanted;
         let candidates: Vec<_> = all.iter().copied().filter(is).collect();
         if candidates.is_empty() {
             let what = format!("no topic {} has messages", quoted(wanted.as_bytes()));
@@ -276,8 +292,7 @@ fn choose(
         candidates
     } else {
         let of = |sensor: Sensor| -> Vec<_> {
-            let is =
-                |(_, one): &(&u16, &Found)| is_raw(one) && has(&one.subscription.topic, sensor);
+            let is = |one: &&Found| is_raw(one) && has(&one.subscription.topic, sensor);
             all.iter().copied().filter(is).collect()
         };
         let candidates = match scaling::wanted_sensor(options)? {
@@ -287,7 +302,7 @@ fn choose(
                 .find(|candidates| !candidates.is_empty())
                 .unwrap_or_default(),
         };
-        let most = candidates.iter().map(|(_, one)| one.messages).max();
+        let most = candidates.iter().map(|one| one.messages).max();
         let Some(most) = most else {
             let there = match list(&all) {
                 there if there.is_empty() => "there are no messages at all".into(),
@@ -298,11 +313,11 @@ fn choose(
                 "log one of these, or choose with --topic and --columns",
             );
         };
-        let is = |(_, one): &(&u16, &Found)| one.messages == most;
+        let is = |one: &&Found| one.messages == most;
         candidates.into_iter().filter(is).collect()
     };
     match candidates.as_slice() {
-        [(identity, _)] => Ok(**identity),
+        [one] => Ok(one),
         several => fail(
             format!(
                 "{} topics fit equally well: {}",

@@ -10,6 +10,7 @@ mod origins;
 mod rounded;
 mod sources;
 mod stamps;
+mod subscriptions;
 mod text;
 mod values;
 mod wraps;

@@ -29,8 +29,8 @@ pub(super) struct Bag {
     /// The files in the order of their messages.
     files: Vec<PathBuf>,
     topic: String,
-    /// What the first messages say of their own values.
-    said: Vec<String>,
+    /// Whether all messages say that there is no estimate of the rates, and of the accelerations.
+    unmeasured: [bool; 2],
     metadata: Metadata,
     columns: Columns,
 }
@@ -57,6 +57,7 @@ impl Bag {
         // The first messages of the topic that is read, which is the first one if it is the only one.
         let mut first: Option<(Rc<str>, Vec<ImuMessage>)> = None;
         let mut frames = BTreeSet::new();
+        let mut unmeasured = [true; 2];
         let channels = each_message(container, &files, progress, &mut |channel, bytes| {
             if wanted.is_some_and(|wanted| *channel.topic != *wanted) {
                 return Ok(ControlFlow::Continue(()));
@@ -64,9 +65,20 @@ impl Bag {
             if let Some(encoding) = channel.imu() {
                 let (topic, first) =
                     first.get_or_insert_with(|| (channel.topic.clone(), Vec::new()));
-                if *topic == channel.topic && first.len() < LOOKS {
+                if *topic != channel.topic {
+                    return Ok(ControlFlow::Continue(()));
+                }
+                if first.len() < LOOKS {
                     first.extend(ImuMessage::read(bytes, encoding));
                     frames.extend(frame_of(bytes, encoding));
+                }
+                // One message with an estimate is enough.
+                if unmeasured.contains(&true)
+                    && let Ok(message) = ImuMessage::read(bytes, encoding)
+                {
+                    for (all, this) in unmeasured.iter_mut().zip(message.unmeasured) {
+                        *all &= this;
+                    }
                 }
             }
             Ok(ControlFlow::Continue(()))
@@ -91,19 +103,10 @@ impl Bag {
             };
             first.iter().map(value).collect()
         };
-        let quantities = ["angular velocity", "linear acceleration"].into_iter();
-        let unmeasured = quantities.enumerate().filter(|&(quantity, _)| {
-            !first.is_empty() && first.iter().all(|message| message.unmeasured[quantity])
-        });
-        let said = unmeasured.map(|(_, quantity)| {
-            format!(
-                "its messages say that there is no estimate of the {quantity} (the first element of its covariance is -1): check \
-                 whether the driver measures it"
-            )
-        });
+        let unmeasured = unmeasured.map(|all| all && !first.is_empty());
         Ok(Self {
             container,
-            said: said.collect(),
+            unmeasured,
             files,
             topic,
             metadata: Metadata::default(),
@@ -116,6 +119,34 @@ impl Bag {
                 said: String::new(),
             },
         })
+    }
+}
+
+impl Bag {
+    /// Refuses axes of a sensor of which there is no estimate.
+    fn check(&self, axes: &[AxisColumn]) -> Result<(), Failure> {
+        let sensors = [
+            (1..4, "angular velocity", "accelerometer", "accel"),
+            (4..7, "linear acceleration", "gyro", "gyro"),
+        ];
+        for (sensor, (columns, quantity, other, option)) in sensors.into_iter().enumerate() {
+            let is_asked = axes.iter().any(|axis| columns.contains(&axis.column));
+            if !is_asked || !self.unmeasured[sensor] {
+                continue;
+            }
+            let what = format!(
+                "the messages of topic {} say that there is no estimate of the {quantity}: the first element of its covariance is -1",
+                self.topic
+            );
+            let driver = "record with a driver that measures it";
+            let remedy = match self.unmeasured[1 - sensor] {
+                true => driver.to_owned(),
+                false => format!("read the {other} with --sensor {option}, or {driver}"),
+            };
+            let file = self.files.first().map_or(Path::new(""), PathBuf::as_path);
+            return Err(Place::file(file).failure(what, remedy));
+        }
+        Ok(())
     }
 }
 
@@ -134,6 +165,7 @@ impl Table for Bag {
         visitor: &mut V,
         progress: &ProgressBar,
     ) -> Result<Ended, Failure> {
+        self.check(axes)?;
         let mut ended = Ended::AtTheLastRow;
         let mut row = 0;
         each_message(
@@ -166,10 +198,7 @@ impl Table for Bag {
     }
 
     fn notes(&self) -> Vec<String> {
-        let topic = format!("topic {}", self.topic);
-        std::iter::once(topic)
-            .chain(self.said.iter().cloned())
-            .collect()
+        vec![format!("topic {}", self.topic)]
     }
 }
 

@@ -12,6 +12,7 @@ mod sources;
 mod stamps;
 mod subscriptions;
 mod text;
+mod unmeasured;
 mod values;
 mod wraps;
 

@@ -13,7 +13,8 @@ const MAGICS: [(&[u8], &str, &str); 12] = [
     (
         b"MDF     ",
         "a measurement in the format MDF",
-        "export each channel of the gyro as CSV, such as with `MDF('FILE').get(NAME)` of asammdf, and keep its invalid samples empty: an export of the whole file fills them with straight lines",
+        "write a table in which invalid samples are NaN, with asammdf and pandas: `mdf = MDF('FILE'); DataFrame({name: \
+         Series(s.samples, s.timestamps) for name in NAMES for s in [mdf.get(name)]}).to_csv('log.csv', index_label='time_s')`",
     ),
     (
         b"TDSm",

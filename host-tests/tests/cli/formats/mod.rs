@@ -6,6 +6,7 @@ mod broken;
 mod cases;
 mod hdf5;
 mod layouts;
+mod measurements;
 mod origins;
 mod rounded;
 mod sources;

@@ -20,6 +20,9 @@ use std::{
 /// The format of stamps, as dates with nanoseconds.
 const STAMPS: &str = "%Y-%m-%dT%H:%M:%S%.9f";
 
+/// The format of times of day, with nanoseconds.
+const TIMES: &str = "%H:%M:%S%.9f";
+
 /// Rewrites the columns of numbers and stamps; those of a structure are named `STRUCTURE.FIELD`.
 pub(super) fn convert(
     path: &Path,
@@ -51,7 +54,9 @@ pub(super) fn convert(
         }
         _ => Box::new(StreamReader::try_new(BufReader::new(file), None).map_err(Wrong::damaged)?),
     };
-    let builder = WriterBuilder::new().with_timestamp_format(STAMPS.into());
+    let builder = WriterBuilder::new()
+        .with_timestamp_format(STAMPS.into())
+        .with_time_format(TIMES.into());
     let mut writer = builder.build(text);
     let mut rows = 0;
     for batch in batches {
@@ -74,7 +79,7 @@ pub(super) fn convert(
     }
 }
 
-/// The columns that a text has room for, with stamps in nanoseconds and without time zones.
+/// The columns that a text has room for, with stamps and times of day in nanoseconds and without time zones.
 fn columns(batch: &RecordBatch) -> Result<RecordBatch, ArrowError> {
     let batch = batch.normalize(".", None)?;
     let schema = batch.schema();
@@ -93,6 +98,9 @@ fn columns(batch: &RecordBatch) -> Result<RecordBatch, ArrowError> {
                     name,
                     cast(column, &DataType::Timestamp(TimeUnit::Nanosecond, None))?,
                 ));
+            }
+            DataType::Time32(_) | DataType::Time64(_) => {
+                kept.push((name, cast(column, &DataType::Time64(TimeUnit::Nanosecond))?));
             }
             DataType::Duration(unit) => {
                 if !name.contains('[') {

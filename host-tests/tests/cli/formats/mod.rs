@@ -13,6 +13,7 @@ mod sources;
 mod stamps;
 mod subscriptions;
 mod text;
+mod times_of_day;
 mod unmeasured;
 mod values;
 mod wraps;

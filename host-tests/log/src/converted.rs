@@ -26,7 +26,6 @@ pub(super) struct Converted {
 
 impl Converted {
     /// The note on what is left out, without what it says of the rest.
-    #[cfg(any(feature = "bags", feature = "tables"))]
     pub(super) fn left_out(&self) -> Option<&str> {
         let note = self.note.as_deref()?;
         note.find(LEFT_OUT).map(|place| &note[place..])

@@ -15,7 +15,12 @@ fn a_measurement_is_refused_with_a_table_that_keeps_invalid_samples_out() {
     let line = try_read(&path, &Options::default()).unwrap_err();
     let (what, remedy) = line.split_once("; ").unwrap();
     assert_eq!(what, "a.mf4: this is a measurement in the format MDF");
-    for words in ["NaN", "MDF('a.mf4')", "mdf.get(name)", "index_label='time_s'"] {
+    for words in [
+        "NaN",
+        "MDF('a.mf4')",
+        "mdf.get(name)",
+        "index_label='time_s'",
+    ] {
         assert!(remedy.contains(words), "{words}: {line}");
     }
 

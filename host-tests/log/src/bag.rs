@@ -138,7 +138,8 @@ impl Bag {
                 "the messages of topic {} say that there is no estimate of the {quantity}: the first element of its covariance is -1",
                 self.topic
             );
-            let driver = "record with a driver that measures it";
+            let driver =
+                "record with a driver that measures it, or export it as text if this driver does";
             let remedy = match self.unmeasured[1 - sensor] {
                 true => driver.to_owned(),
                 false => format!("read the {other} with --sensor {option}, or {driver}"),

@@ -55,7 +55,9 @@ fn a_quantity_without_an_estimate_is_refused_and_the_other_read() {
                 "say that there is no estimate of the {quantity}: the first element of its covariance is -1"
             );
             assert!(what.ends_with(&expected), "{line}");
-            let expected = format!("read the {other}, or record with a driver that measures it");
+            let expected = format!(
+                "read the {other}, or record with a driver that measures it, or export it as text if this driver does"
+            );
             assert_eq!(remedy, expected);
             let log = try_read(&path, &of(rest)).unwrap();
             let samples = log.axes[0].accumulator.samples() as usize;
@@ -79,7 +81,9 @@ fn a_quantity_without_an_estimate_is_refused_and_the_other_read() {
         fs::write(&path, &marked).unwrap();
         let line = try_read(&path, &Options::default()).unwrap_err();
         assert!(
-            line.ends_with("; record with a driver that measures it"),
+            line.ends_with(
+                "; record with a driver that measures it, or export it as text if this driver does"
+            ),
             "{line}"
         );
     }

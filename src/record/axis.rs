@@ -65,7 +65,7 @@ pub type Axis<
 ///
 /// # Cost
 ///
-/// With the parts that are the default, 20 octaves and one covariate, three axes take 5.5 KiB per axis on a 32-bit
+/// With the parts that are the default, 20 octaves and one covariate, three axes take 5.7 KiB per axis on a 32-bit
 /// core. A spectrum takes 3.9 KiB more per axis, and a course 2.6 KiB. An empty state is all zero, so that a
 /// `static` is placed in `.bss`. `cargo xtask bench` measures the memory and the instructions per sample.
 ///

@@ -30,7 +30,7 @@ pub fn note(axis: &AxisCurve, fit: &Fit) -> Option<String> {
     let [value, lower, upper] =
         [white.value, white.lower, white.upper].map(|end| number(factor * less(end)));
     Some(format!(
-        "rounding to whole counts raises angle random walk by {percent:.0} %: without it, it is {value} {unit}, \
+        "rounding of the values raises angle random walk by {percent:.0} %: without it, it is {value} {unit}, \
          95 % interval {lower} … {upper}"
     ))
 }

@@ -81,7 +81,7 @@ fn the_share_of_rounding_is_told() {
     let [note] = fitted[..] else {
         panic!("{fitted:?}")
     };
-    let percent = note.strip_prefix("rounding to whole counts raises angle random walk by ");
+    let percent = note.strip_prefix("rounding of the values raises angle random walk by ");
     let percent = percent.and_then(|rest| rest.split(' ').next()?.parse::<f64>().ok());
     assert!(
         percent.is_some_and(|percent| (6.0..11.0).contains(&percent)),

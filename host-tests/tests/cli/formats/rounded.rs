@@ -40,7 +40,7 @@ fn decimals_rounded_to_a_step_as_large_as_their_noise_get_the_note_of_whole_numb
             .lines()
             .find_map(|line| line.split_once("without it, it is "));
         let (note, rest) = note.unwrap_or_else(|| panic!("{step}: {text}"));
-        assert!(note.starts_with("Note: rounding to whole counts raises angle random walk by "));
+        assert!(note.starts_with("Note: rounding of the values raises angle random walk by "));
         let words: Vec<&str> = rest.trim_end_matches('.').split([' ', ',']).collect();
         let numbers: Vec<f64> = words.iter().filter_map(|word| word.parse().ok()).collect();
         let [value, 95.0, lower, upper] = numbers[..] else {

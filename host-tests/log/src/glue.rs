@@ -153,9 +153,12 @@ fn is_checksum(text: &[u8]) -> bool {
         if (1..=8).contains(&digits.len()) && digits.iter().all(u8::is_ascii_hexdigit))
 }
 
+/// The longest field that is looked at: each place of it may begin a number.
+const LONGEST: usize = 256;
+
 /// What stands in front of the number at the end of a field, and the number, if the field is not that number.
 fn split(field: &[u8]) -> Option<(&[u8], f64)> {
-    if Kind::of(field) != Kind::Text {
+    if field.len() > LONGEST || Kind::of(field) != Kind::Text {
         return None;
     }
     let starts = (1..field.len()).filter(|&start| begins_number(&field[start]));

@@ -24,7 +24,8 @@ pub struct Dependence {
     pub slope: Slope,
     /// By how much the rate is late, in seconds. Below zero, it is early.
     pub lag_s: Real,
-    /// The standard error of the lag, with a sixth of the distance of the two lags; `None` if a single covariate is followed, which has the lag nearest to the true one.
+    /// The standard error of the lag, with a sixth of the distance of the two lags. `None` if a single covariate is followed, whose lag is
+    /// then near the true one.
     pub lag_error_s: Option<Real>,
 }
 

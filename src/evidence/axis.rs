@@ -198,8 +198,8 @@ where
 
     /// The reason why the curve of an axis is not valid; `None` if it is valid.
     ///
-    /// The verdict is that of [`Integrity`](crate::integrity::Integrity) on the record that is kept, of what a reader [made](crate::faults::Reads) of the
-    /// samples, and of a change of the noise, if its [course](Courses) is kept. A [record](Self::record) also shows
+    /// The verdict is that of [`Integrity`](crate::integrity::Integrity) on the record that is kept, of what a reader
+    /// [made](crate::faults::Reads) of the samples, and of a change of the noise, if its [course](Courses) is kept. A [record](Self::record) also shows
     /// [motion](crate::motion) that never stopped, for which its scale is needed. Motion in one axis makes all axes
     /// invalid, because a gyro that turns about one axis is not at rest about the others. A record is also
     /// invalid if the gate left out a larger share of its samples than

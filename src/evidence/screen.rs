@@ -25,7 +25,7 @@ const FEW_REPEATS: u32 = 12;
 /// The averaging times of a quarter, half and whole second, to half an octave.
 const SLOW_S: core::ops::Range<Real> = 0.177..1.414;
 /// The τσ² in (°/s)²/Hz of motion at all of them, that at one of them if it lies so many times above the least one at shorter times, and how
-/// many.
+/// many. `motion` has the first two as logarithms.
 const LOUD: Real = 0.25;
 const LOUD_WHERE_RISEN: Real = 0.09;
 const RISEN: Real = 10.0;

@@ -11,9 +11,9 @@ const LONGEST: u32 = 30;
 ///
 /// A gyro has a thermal mass, so that its rate follows a thermometer with a lag of seconds to minutes. Subtracting the temperature as
 /// it is then leaves a rest that looks like rate random walk. The sum of two neighbouring covariates of this bank follows any
-/// lag that is not much longer than the longest one, so that a [diagnosis](crate::diagnosis) that tries
-/// them [in pairs](crate::covariate::Pair) leaves next to nothing, and
-/// [`dependence`](crate::diagnosis::FollowedCovariate::dependence) gives the slope and the lag.
+/// lag up to a third of the longest one. So a [diagnosis](crate::diagnosis) that tries them
+/// [in pairs](crate::covariate::Pair) explains the record, and
+/// [`dependence`](crate::diagnosis::FollowedCovariate::dependence) gives the slope and the lag. Longer lags leave a rest.
 ///
 /// ```
 /// use allanite::{Axes, covariate::Lags};

@@ -28,3 +28,8 @@ fn six_hundred_records_get_one_verdict_each() {
 fn a_device_is_right_about_four_thousand_records() {
     Truth::of(200, 2, 2_000..30_000).assert();
 }
+
+#[test]
+fn a_small_core_is_right_about_what_it_sees() {
+    Truth::by_screens(100, 4, 2_000..30_000).assert_screened();
+}

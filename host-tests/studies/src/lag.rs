@@ -30,6 +30,9 @@ pub const SAMPLES: usize = 1 << 16;
 /// The size of a count of the temperature, in kelvin.
 const KELVIN: f64 = 1e-3;
 
+/// The name of the column, by which it is known as a temperature.
+const COLUMN: &str = "temp_C";
+
 /// The course of a temperature.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Course {
@@ -41,6 +44,8 @@ pub enum Course {
     FastCycle,
     /// A random walk of 0.05 K/√s.
     Walk,
+    /// A ramp of 6 K an hour.
+    Ramp,
 }
 
 impl Course {
@@ -88,7 +93,13 @@ struct Simulated {
 }
 
 /// A record of a preset, drawn with a seed.
-fn simulated(preset: Preset, course: Course, dependence: Dependence, seed: u64) -> Simulated {
+fn simulated(
+    preset: Preset,
+    course: Course,
+    dependence: Dependence,
+    steps: Option<f64>,
+    seed: u64,
+) -> Simulated {
     let base = preset.coefficients();
     let mut random = Random::seed_from_u64(seed ^ 0x7e3a_91d4);
     let mut between = |low: f64, high: f64| low + (high - low) * random.random::<f64>();
@@ -98,7 +109,10 @@ fn simulated(preset: Preset, course: Course, dependence: Dependence, seed: u64) 
         between(200.0, 900.0),
     );
     let is_coarse = between(0.0, 1.0) < 0.5;
-    let noise = between(0.0, 0.2);
+    let noise = match steps {
+        Some(_) => 0.02,
+        None => between(0.0, 0.2),
+    };
     // Some times the white noise of one second, so that a change of a few kelvin stands out.
     let slope = between(2.0, 6.0) * base.angle_random_walk;
     let truth = Truth {
@@ -119,7 +133,7 @@ fn simulated(preset: Preset, course: Course, dependence: Dependence, seed: u64) 
             0.0
         },
         noise,
-        step: if is_coarse { 0.1 } else { KELVIN },
+        step: steps.unwrap_or(if is_coarse { 0.1 } else { KELVIN }),
     };
     let mut walk = 0.0;
     let mut temperature: Vec<f64> = Vec::new();
@@ -131,6 +145,7 @@ fn simulated(preset: Preset, course: Course, dependence: Dependence, seed: u64) 
             Course::SlowCycle => 3.0 * (2.0 * PI * t / 1200.0).sin(),
             Course::FastCycle => 2.0 * (2.0 * PI * t / period).sin(),
             Course::Walk => walk,
+            Course::Ramp => 6.0 * t / 3600.0,
         });
     }
     let mean = temperature.iter().sum::<f64>() / SAMPLES as f64;
@@ -169,7 +184,7 @@ fn simulated(preset: Preset, course: Course, dependence: Dependence, seed: u64) 
         broken: blocks.broken().into(),
         rate: blocks.means(0).map(|mean| mean * unit).collect(),
         columns: [(
-            "T".to_owned(),
+            COLUMN.to_owned(),
             blocks.means(1).map(|mean| mean * KELVIN).collect(),
         )]
         .into(),
@@ -180,7 +195,7 @@ fn simulated(preset: Preset, course: Course, dependence: Dependence, seed: u64) 
         spectrum: spectrum.spectrum(scale),
         densities: sums.cosine_transform(scale),
         evidence: Evidence {
-            covariates: vec![("T".to_owned(), cross)],
+            covariates: vec![(COLUMN.to_owned(), cross)],
             means: Some(means),
             ..Evidence::default()
         },
@@ -206,8 +221,14 @@ pub struct Outcome {
 }
 
 /// Diagnoses one record as the command line does.
-pub fn diagnose(preset: Preset, course: Course, dependence: Dependence, seed: u64) -> Outcome {
-    let record = simulated(preset, course, dependence, seed);
+pub fn diagnose(
+    preset: Preset,
+    course: Course,
+    dependence: Dependence,
+    steps: Option<f64>,
+    seed: u64,
+) -> Outcome {
+    let record = simulated(preset, course, dependence, steps, seed);
     let model = Model::ieee_952();
     let (curve, spectrum) = (&record.curve, &record.spectrum);
     let candidates = Candidates::new(curve, spectrum, &model, &record.evidence);
@@ -265,9 +286,15 @@ pub struct Tally {
     pub wrong: usize,
 }
 
-/// Counts over the records of one case.
-pub fn study(preset: Preset, course: Course, dependence: Dependence, records: u64) -> Tally {
-    let one = |seed: u64| Tally::of(&diagnose(preset, course, dependence, seed));
+/// Counts over the records of one case. The thermometer has steps of so many kelvin, or is drawn.
+pub fn study(
+    preset: Preset,
+    course: Course,
+    dependence: Dependence,
+    steps: Option<f64>,
+    records: u64,
+) -> Tally {
+    let one = |seed: u64| Tally::of(&diagnose(preset, course, dependence, steps, seed));
     let outcomes = (0..records).into_par_iter().map(one);
     outcomes.reduce(Tally::default, Tally::plus)
 }

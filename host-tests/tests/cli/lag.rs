@@ -198,3 +198,33 @@ fn few_steps_of_a_thermometer_exclude_no_dependence_and_tell_no_lag() {
         assert_eq!(text.contains(seldom) || follows, steps == 1.0, "{what}");
     }
 }
+
+/// A ramp of 6 K an hour, in steps of a whole degree, with a swing between the steps. Taken as it is, the column is off by half
+/// a degree for minutes, which looked like an oscillation and hid the slope.
+#[test]
+fn the_slope_on_a_thermometer_in_whole_degrees_is_found() {
+    for seed in 1..=4 {
+        let folder = TempDir::new().unwrap();
+        let mut random = Random::seed_from_u64(seed);
+        let mut text = "# rate_hz=2\n# unit=deg/s\ngyro_z,temp_C\n".to_owned();
+        for n in 0..7200 {
+            let t = f64::from(n) / 2.0;
+            let celsius = 24.8 + 6.0 * t / 3600.0 + 0.05 * (2.0 * PI * t / 600.0).sin();
+            let noise: [f64; 2] = [(); 2].map(|()| random.sample(StandardNormal));
+            let rate = 0.02 * celsius + 0.007 * noise[0];
+            let told = (celsius + 0.02 * noise[1]).round();
+            writeln!(text, "{rate:.6},{told:.0}").unwrap();
+        }
+        fs::write(folder.path().join("log.csv"), text).unwrap();
+        let axis = json(folder.path(), &["diagnose", "log.csv"])["axes"][0].clone();
+        assert_eq!(axis["missing"], serde_json::json!(["covariate"]), "{axis}");
+        let text = output(folder.path(), &["diagnose", "log.csv"]);
+        let (_, rest) = text.split_once("slope ").unwrap();
+        let (_, interval) = rest.split_once('(').unwrap();
+        let (interval, _) = interval.split_once(')').unwrap();
+        let (lower, upper) = interval.split_once(" … ").unwrap();
+        let ends: [f64; 2] = [lower, upper].map(|end| end.parse().unwrap());
+        assert!((ends[0]..=ends[1]).contains(&0.02), "{text}");
+        assert!(!text.contains("with a lag of"), "{text}");
+    }
+}

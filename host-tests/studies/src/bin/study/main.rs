@@ -225,8 +225,11 @@ enum Study {
         #[arg(long, default_value_t = 1000)]
         records: u64,
         /// Draw the course, the lag and the noise of the temperature at random
-        #[arg(long)]
+        #[arg(long, conflicts_with = "steps")]
         drawn: bool,
+        /// Round the temperature to steps of 0.01 to 1 K
+        #[arg(long)]
+        steps: bool,
     },
     /// Count how often the course of a record tells of a change of noise, of bursts, a step and a warm-up, when there is one and when there is none
     Course {
@@ -434,7 +437,13 @@ fn main() -> Result<()> {
         Study::Thermal {
             records,
             drawn: true,
+            ..
         } => thermal::print_drawn(records),
+        Study::Thermal {
+            records,
+            steps: true,
+            ..
+        } => thermal::print_steps(records),
         Study::Thermal { records, .. } => thermal::print(records),
         Study::Course {
             records,

@@ -32,10 +32,50 @@ pub(crate) fn print_drawn(records: u64) {
             Dependence::None,
         ] {
             for course in Course::ALL {
-                let tally = lag::study(preset, course, dependence, records);
+                let tally = lag::study(preset, course, dependence, None, records);
                 println!(
                     "{:<6} {:<10} {:<9} {:>6} {:>7} {:>7} {:>7} {:>13} {:>11} {:>13}",
                     format!("{preset:?}"),
+                    format!("{course:?}"),
+                    format!("{dependence:?}"),
+                    tally.found,
+                    tally.lagged,
+                    tally.rate_of_change,
+                    tally.square,
+                    tally.slope_inside,
+                    tally.lag_inside,
+                    tally.wrong
+                );
+            }
+        }
+    }
+}
+
+/// Thermometers with coarse steps, with seeds from 0 on.
+pub(crate) fn print_steps(records: u64) {
+    println!(
+        "mems at 20 Hz, {records} records of 2^16 samples a line; lag 10 … 120 s, thermometer noise 0.02 K"
+    );
+    println!(
+        "{:<7} {:<10} {:<9} {:>6} {:>7} {:>7} {:>7} {:>13} {:>11} {:>13}",
+        "step, K",
+        "course",
+        "follows",
+        "found",
+        "lagged",
+        "rate",
+        "square",
+        "slope inside",
+        "lag inside",
+        "wrong effect"
+    );
+    let courses = [Course::WarmUp, Course::SlowCycle, Course::Ramp];
+    for dependence in [Dependence::AtOnce, Dependence::Lagged, Dependence::None] {
+        for step in [0.01, 0.1, 0.5, 1.0] {
+            for course in courses {
+                let tally = lag::study(Preset::Mems, course, dependence, Some(step), records);
+                println!(
+                    "{step:<7} {:<10} {:<9} {:>6} {:>7} {:>7} {:>7} {:>13} {:>11} {:>13}",
                     format!("{course:?}"),
                     format!("{dependence:?}"),
                     tally.found,

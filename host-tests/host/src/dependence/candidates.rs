@@ -451,7 +451,7 @@ impl Stepped {
 }
 
 /// What the course between the steps is off by, as far as it goes with the column: what a slope takes over of it. Chosen by hand:
-/// with it, `cargo xtask study thermal --steps` finds the slope in its interval in 95 % of the records.
+/// with it, `cargo xtask study thermal --steps` finds the slope in its interval in 858 of 888 records.
 const SHARED: f64 = 0.25;
 
 /// Means in which temperatures that change in steps have the course between these, and what is known of such temperatures.

@@ -47,6 +47,7 @@ mod formats;
 mod help;
 mod known_filter;
 mod lag;
+mod layouts;
 mod limits;
 mod log;
 mod lost_rows;

@@ -62,7 +62,7 @@ pub(super) fn outcome(layout: &Layout, folder: &Path) -> (Outcome, String) {
             Judged::Right if given.contains("assumed") => Outcome::Assumed,
             Judged::Right if given.is_empty() => Outcome::Right,
             Judged::Right => Outcome::Asked(is_spelled_out),
-            Judged::Scaled if !log.has_scale && given.insert("assumed") => {
+            Judged::Scaled if log.notes.iter().any(|note| note.contains("--unit)") || note.contains("--scale)")) && given.insert("assumed") => {
                 give_unit(source.unwrap(), &mut options);
                 continue;
             }
@@ -198,6 +198,8 @@ fn answer(
     }
     if asks("rate") && given.insert("rate") {
         options.rate_hz = Some(source.rate_hz);
+        // Stamps of a unit that no option names do not help.
+        options.time = None;
         return Some(true);
     }
     None

@@ -90,6 +90,7 @@ impl Glue {
         match self {
             Self::SemicolonBehind => format!("{row};"),
             Self::CommaBehind => format!("{row}{}", separator.trim_end()),
+            Self::Arrow | Self::Esp => self.around(names, separator, 0),
             _ => row,
         }
     }

@@ -332,6 +332,9 @@ impl Written {
         parts: Vec<Part>,
         random: &mut Random,
     ) -> Self {
+        // Counts have no unit.
+        let has_counts = parts.iter().flat_map(|part| &part.columns).any(|columns| columns.count.is_some());
+        let style = if has_counts { UnitStyle::None } else { style };
         let glue = match kind {
             Kind::Single | Kind::Increments | Kind::Forces => {
                 Glue::new(stamps.manner, has_header, random)
@@ -369,7 +372,7 @@ impl Written {
             key_place: random.below(3),
             key_name: random.of(key_names),
             has_index: has_header && separator == "," && random.chance(0.08),
-            preamble: if has_header && random.chance(0.12) { 1 + random.below(3) } else { 0 },
+            preamble: if has_header && !glue.has_time() && random.chance(0.12) { 1 + random.below(3) } else { 0 },
             line_end: if random.chance(0.15) { "\r\n" } else { "\n" },
             names: Vec::new(),
             below: Vec::new(),
@@ -381,7 +384,11 @@ impl Written {
 
     /// Names the columns of values.
     fn name(&mut self, random: &mut Random) {
-        let namer = Namer::new(self.style, random);
+        let is_metric = self.parts.iter().flat_map(|part| &part.columns).all(|columns| {
+            columns.count.is_none()
+                && columns.unit.is_none_or(|unit| !matches!(unit.option, "deg/s" | "g") && unit.scale == 1.0)
+        });
+        let namer = Namer::new(self.style, is_metric, random);
         let mut column = 0;
         let mut first: Vec<(Vec<String>, String)> = Vec::new();
         for (number, part) in self.parts.iter().enumerate() {
@@ -512,7 +519,8 @@ impl Written {
                 let mut units = vec![self.stamps.below.clone()];
                 units.resize(self.stamps.columns(), String::new());
                 let units = self.row("", units, "", self.below.clone());
-                if !self.separator.starts_with(' ') {
+                let is_known = self.below.iter().any(|unit| !unit.is_empty());
+                if is_known && !self.separator.starts_with(' ') {
                     lines.push(self.glue.header(&units, self.separator));
                 }
             }
@@ -682,7 +690,11 @@ impl Written {
             is_unreadable: matches!(self.kind, Kind::Angles | Kind::Keyless),
             sources,
             key,
-            time: (self.stamps.columns() > 0).then_some(before + 1),
+            time: match self.stamps.manner {
+                Manner::None => None,
+                Manner::Week(_) | Manner::TwoColumns(_) => Some(before + 2),
+                _ => Some(before + 1),
+            },
             time_unit: self.stamps.time_unit(),
             rate_error,
             noise_error: if is_lossy { 0.03 } else { 0.01 } + rate_error,

@@ -57,6 +57,9 @@ const PRODUCTS: [Product; 22] = [
     product("Angular velocity $", "Acceleration $", "Magnetic field $", "Temperature"),
 ];
 
+/// The products that always write rad/s and m/s².
+const METRIC: [usize; 3] = [6, 7, 13];
+
 const RATE: [&str; 18] = [
     "gyro_@",
     "gyr_@",
@@ -139,8 +142,10 @@ pub(super) struct Namer {
 }
 
 impl Namer {
-    pub(super) fn new(style: UnitStyle, random: &mut Random) -> Self {
+    /// Some products always write rad/s and m/s².
+    pub(super) fn new(style: UnitStyle, is_metric: bool, random: &mut Random) -> Self {
         let product = random.chance(0.5).then(|| random.below(PRODUCTS.len()));
+        let product = product.filter(|product| is_metric || !METRIC.contains(product));
         Self { product, style }
     }
 

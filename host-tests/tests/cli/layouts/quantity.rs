@@ -264,7 +264,13 @@ fn values(quantity: Quantity, style: Style, random: &mut Random) -> Vec<Vec<f64>
             Quantity::Constant => 3_014_666.0,
             Quantity::Label | Quantity::Covariance => 0.0,
         });
-        axes.push(values.collect());
+        axes.push(values.collect::<Vec<f64>>());
+    }
+    if quantity == Quantity::Attitude {
+        for sample in 0..style.samples {
+            let norm = axes.iter().map(|axis| axis[sample].powi(2)).sum::<f64>().sqrt();
+            axes.iter_mut().for_each(|axis| axis[sample] /= norm);
+        }
     }
     axes
 }

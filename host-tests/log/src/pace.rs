@@ -150,8 +150,9 @@ pub(super) fn possible_units(first: &[f64]) -> Option<Vec<TimeUnit>> {
         // A step of exactly 10 s may be rounded upwards.
         (0.99 * slowest_hz..FASTEST_HZ).contains(&(unit.per_second() / step))
     };
-    // This range covers the years 2001 to 2286, in seconds since 1970.
-    let since_1970 = |unit: &TimeUnit| (1e9..1e10).contains(&(first[0] / unit.per_second()));
+    // This range covers the years 2001 to 2037, in seconds since 1970. Counters of 31 and 32 bits are beyond it shortly before
+    // they begin anew.
+    let since_1970 = |unit: &TimeUnit| (1e9..2.14e9).contains(&(first[0] / unit.per_second()));
     let fitting = TimeUnit::ALL.into_iter().filter(fits);
     let fitting: Vec<TimeUnit> = fitting.collect();
     match fitting.iter().find(|unit| since_1970(unit)) {
@@ -310,6 +311,8 @@ mod tests {
             (0.0, 20.0, &[Ms]),
             (0.0, 40.0, &[Ms, Us]),
             (1.2e8, 4000.0, &[Us]),
+            (4.294e9, 2.0, &[S, Ms]),
+            (4.294e9, 4000.0, &[Us]),
             (0.0, 40_000.0, &[Us, Ns]),
             (1.403e18, 5e6, &[Ns]),
             (0.0, 5e6, &[Ns]),

@@ -50,6 +50,10 @@ const FOREIGN: [&str; 15] = [
 /// The unit that is written `rad s^-1`, `deg/sec`, `dps` or `m/s²`, and the factor from a value to
 /// it.
 fn unit_of_text(text: &str) -> Option<(Unit, f64)> {
+    // The case tells milligauss from thousandths of gravity.
+    if text.trim() == "mG" {
+        return None;
+    }
     let mut text = text.to_lowercase();
     for (long, short) in [
         ("degrees", "deg"),
@@ -120,8 +124,8 @@ const NO_UNITS: [&str; 7] = ["-", "--", "n/a", "none", "no_units", "no units", "
 
 /// Whether a text is a unit of anything that a log of inertial sensors may hold.
 fn is_unit(text: &str) -> bool {
-    const OTHERS: [&str; 16] = [
-        "deg", "°", "rad", "ut", "µt", "mgauss", "gauss", "t", "v", "mv", "pa", "hpa", "mbar",
+    const OTHERS: [&str; 17] = [
+        "deg", "°", "rad", "ut", "mg", "µt", "mgauss", "gauss", "t", "v", "mv", "pa", "hpa", "mbar",
         "kpa", "m", "%",
     ];
     let lower = text.to_lowercase();
@@ -174,6 +178,7 @@ mod tests {
             ("gyro_rpm_x", "rpm"),
             ("gyro_x_rad_h", "rad/h"),
             ("gyro_x_lsb", "lsb"),
+            ("Bx (mG)", "mG"),
         ] {
             assert_eq!(unit(name), Err(text.into()), "{name}");
         }

@@ -3,7 +3,7 @@
 //! No list has every name. What counts is a word for the quantity or a unit of it, and a letter of an axis.
 
 use super::{
-    names::{bare, is_angle, tokens},
+    names::{self, bare, is_angle, tokens},
     unit_names,
 };
 use crate::unit::Sensor;
@@ -98,8 +98,11 @@ pub(super) fn are_triple(names: [&str; 3]) -> bool {
             && x[..at] == z[..at] && x[at + 1..] == z[at + 1..])
 }
 
+/// Whether a name tells a unit of a rate. The unit `rad` of a name such as `roll_rad` is that of an angle.
 fn has_unit_of_rate(name: &str) -> bool {
-    matches!(unit_names::unit(name), Ok(Some((unit, _))) if unit.sensor() == Sensor::Gyro)
+    let lower = name.trim().to_lowercase();
+    let is_of_angle = lower.ends_with("rad") || names::in_brackets(&lower).is_some_and(|(_, unit)| unit == "rad");
+    !is_of_angle && matches!(unit_names::unit(name), Ok(Some((unit, _))) if unit.sensor() == Sensor::Gyro)
 }
 
 /// Whether the words begin or end with the letter of a quantity and that of an axis: `gx`, `gx_raw131`, `imu_gx`,
@@ -200,6 +203,8 @@ mod tests {
             "gyro_calibration_count",
             "gyro_device_id",
             "roll_deg",
+            "roll_rad",
+            "angle_x [rad]",
             "angular_velocity_covariance",
             "gyr_norm",
             "gyro_x_msb",

@@ -23,12 +23,12 @@ pub(super) struct Taken {
 }
 
 impl Columns {
-    /// The sensor that the names of these columns agree on.
+    /// The sensor that the names of these columns agree on, or those of the axes where the columns have none.
     pub(super) fn sensor_of(&self, axes: &[AxisColumn]) -> Option<Sensor> {
         let all_are = |sensor: &Sensor| {
             let is = |axis: &AxisColumn| {
-                let name = self.name(axis.column);
-                name.is_some_and(|name| axis_names::is_axis(name, *sensor))
+                let name = self.name(axis.column).unwrap_or(&axis.axis);
+                axis_names::is_axis(name, *sensor)
             };
             axes.iter().all(is)
         };
@@ -144,10 +144,15 @@ impl Columns {
         // No gyro that has an accelerometer beside it is as quiet as 0.02 °/s in a sample. Chosen by hand.
         const QUIET: f64 = 0.02;
         let beside = self.axes_of(Sensor::Accelerometer);
-        let &[x, y, z] = beside.as_slice() else {
+        let beside = match beside.as_slice() {
+            &[x, y, z] => Some([x, y, z]),
+            [] => self.gravity_beside(axes),
+            _ => None,
+        };
+        let Some(beside) = beside else {
             return false;
         };
-        let norm = self.norm([x, y, z]);
+        let norm = self.norm(beside);
         let scatter = |axis: &AxisColumn| {
             let head = &self.heads[axis.column];
             let squares = head.windows(2).map(|pair| (pair[1] - pair[0]).powi(2));
@@ -236,6 +241,7 @@ impl Columns {
                 ),
             ));
         }
+        let mut sensor = sensor;
         let taken = if by_name.is_empty() {
             let is_no_axis = |name| names::is_other(name) || names::is_time(name);
             let is_axis = |&column: &usize| {
@@ -243,7 +249,14 @@ impl Columns {
                     && !is_time(column)
                     && !self.name(column).is_some_and(is_no_axis)
             };
-            (0..count).filter(is_axis).collect()
+            let all: Vec<usize> = (0..count).filter(is_axis).collect();
+            match self.told_by_values(path, wanted, &all)? {
+                Some((told, taken)) => {
+                    sensor = Some(told);
+                    taken
+                }
+                None => all,
+            }
         } else {
             by_name.clone()
         };

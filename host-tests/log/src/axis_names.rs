@@ -101,8 +101,10 @@ pub(super) fn are_triple(names: [&str; 3]) -> bool {
 /// Whether a name tells a unit of a rate. The unit `rad` of a name such as `roll_rad` is that of an angle.
 fn has_unit_of_rate(name: &str) -> bool {
     let lower = name.trim().to_lowercase();
-    let is_of_angle = lower.ends_with("rad") || names::in_brackets(&lower).is_some_and(|(_, unit)| unit == "rad");
-    !is_of_angle && matches!(unit_names::unit(name), Ok(Some((unit, _))) if unit.sensor() == Sensor::Gyro)
+    let is_of_angle =
+        lower.ends_with("rad") || names::in_brackets(&lower).is_some_and(|(_, unit)| unit == "rad");
+    !is_of_angle
+        && matches!(unit_names::unit(name), Ok(Some((unit, _))) if unit.sensor() == Sensor::Gyro)
 }
 
 /// Whether the words begin or end with the letter of a quantity and that of an axis: `gx`, `gx_raw131`, `imu_gx`,

@@ -143,6 +143,7 @@ mod parts;
 pub mod pieces;
 mod places;
 mod preamble;
+mod quantities;
 mod quantum;
 mod reading;
 mod records;

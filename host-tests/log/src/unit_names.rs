@@ -125,8 +125,8 @@ const NO_UNITS: [&str; 7] = ["-", "--", "n/a", "none", "no_units", "no units", "
 /// Whether a text is a unit of anything that a log of inertial sensors may hold.
 fn is_unit(text: &str) -> bool {
     const OTHERS: [&str; 17] = [
-        "deg", "°", "rad", "ut", "mg", "µt", "mgauss", "gauss", "t", "v", "mv", "pa", "hpa", "mbar",
-        "kpa", "m", "%",
+        "deg", "°", "rad", "ut", "mg", "µt", "mgauss", "gauss", "t", "v", "mv", "pa", "hpa",
+        "mbar", "kpa", "m", "%",
     ];
     let lower = text.to_lowercase();
     unit_of_text(text).is_some()

@@ -27,7 +27,7 @@ pub(super) struct Columns {
     pub(super) looks: Vec<Look>,
     /// The first values of each column that are numbers.
     pub(super) heads: Vec<Vec<f64>>,
-    /// The first values of each column of text, if they are known.
+    /// The first values of each column of text, if they are known, and of each column of numbers that mark sensors.
     pub(super) tags: Vec<Vec<String>>,
     /// The columns that are axes by the definition of the log's format, and their sensors. If there are any, names
     /// are not searched for axes.

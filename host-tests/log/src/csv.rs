@@ -10,7 +10,7 @@ use super::{
     metadata::Metadata,
     preamble::{Preamble, values},
     records::{LONGEST_ROW, Records},
-    source,
+    source, source_marks,
     table::{Ended, Table, Visitor, after_stop},
 };
 use crate::RowChoice;
@@ -28,6 +28,10 @@ const MOST_COLUMNS: usize = 256;
 
 /// The number of rows that decide what the columns look like. Chosen by hand.
 const LOOKS: usize = 100;
+
+/// The number of rows in which the marks of several sensors are looked for. Blocks of rows of one sensor, as a FIFO gives
+/// them, are shorter than a quarter of them. Chosen by hand.
+const MARKED: usize = 1024;
 
 /// A log of text whose first rows are known.
 pub(super) struct Csv {
@@ -101,11 +105,16 @@ impl Csv {
     /// Looks at the columns of the first rows. Returns whether there are any.
     fn look(&mut self, width: usize) -> Result<bool, Failure> {
         let rows = self.first_records()?;
-        let columns = (0..width).map(|column| look(&rows, column));
+        let first = &rows[..rows.len().min(LOOKS)];
+        let columns = (0..width).map(|column| look(first, column));
         (self.columns.looks, self.columns.heads) = columns.unzip();
+        let numbers: Vec<Vec<Option<f64>>> = (0..width)
+            .map(|column| rows.iter().map(|row| number(row, column)).collect())
+            .collect();
         let looks = self.columns.looks.iter().enumerate();
         let tags = looks.map(|(column, look)| match look {
             Look::Text => tags(&rows, column),
+            Look::Number if source_marks::are_marks(&rows, &numbers, column) => tags(&rows, column),
             _ => Vec::new(),
         });
         self.columns.tags = tags.collect();
@@ -144,7 +153,7 @@ impl Csv {
         let text = self.rows(&ProgressBar::hidden())?;
         let mut reader = Records::new(text, self.start, self.dialect.delimiter());
         let mut records: Vec<ByteRecord> = Vec::new();
-        while records.len() < LOOKS {
+        while records.len() < MARKED {
             if !reader.read().map_err(|error| self.failure(error))? {
                 break;
             }

@@ -154,6 +154,7 @@ mod rows;
 mod scaling;
 pub mod sizes;
 mod source;
+mod source_marks;
 mod sources;
 mod spectrogram;
 mod sums;

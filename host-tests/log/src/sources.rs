@@ -8,7 +8,10 @@ use crate::failure::{Failure, Place, quoted};
 use std::path::Path;
 
 /// The most sensors whose rows are recognised in one table. More values are those of a quantity. Chosen by hand.
-const MOST: usize = 8;
+const MOST: usize = 32;
+
+/// The most marks that a message shows.
+const MOST_SHOWN: usize = 8;
 
 /// Rows change from one sensor to another at least so often among the first ones. A label of what is done changes less often.
 /// Chosen by hand.
@@ -32,7 +35,11 @@ impl Columns {
             if !is_mixed {
                 continue;
             }
-            let shown: Vec<String> = marks.iter().map(|mark| quoted(mark.as_bytes())).collect();
+            let mut shown: Vec<String> = marks.iter().map(|mark| quoted(mark.as_bytes())).collect();
+            if shown.len() > MOST_SHOWN {
+                shown.truncate(MOST_SHOWN);
+                shown.push("…".into());
+            }
             let called = match self.name(column) {
                 Some(name) => format!("column {name}"),
                 None => self.called(column),
@@ -56,10 +63,12 @@ impl Columns {
 
     /// The marks of a column that may tell sensors apart, of each of the first rows.
     fn marks(&self, column: usize) -> Vec<String> {
+        if let Some(tags) = self.tags.get(column).filter(|tags| !tags.is_empty()) {
+            return tags.clone();
+        }
         let numbers = &self.heads[column];
         let is_whole = numbers.iter().all(|number| number.fract() == 0.0);
         match self.looks[column] {
-            Look::Text => self.tags.get(column).cloned().unwrap_or_default(),
             Look::Number if is_whole && self.name(column).is_some_and(names::is_source) => {
                 numbers.iter().map(f64::to_string).collect()
             }

@@ -165,7 +165,8 @@ fn answer(
         let by_name = if name.is_empty() { column.to_string() } else { name.clone() };
         let rows = format!("{by_name}={}", source.id);
         options.rows = Some(rows.parse().unwrap());
-        return Some(line.contains(&rows) || line.contains(&format!("{column}={}", source.id)));
+        let is_listed = line.contains(&format!("\"{}\"", source.id));
+        return Some(is_listed || line.contains(&rows));
     }
     if layout.kind == Kind::Forces && asks("sensor") && given.insert("sensor") {
         options.sensor = Some(Sensor::Accelerometer);

@@ -132,7 +132,7 @@ impl Layout {
         if random.chance(0.3) {
             rate_hz *= 1.0 + 0.004 * random.normal();
         }
-        let stamps = Stamps::new(rate_hz, random);
+        let stamps = Stamps::new(rate_hz, has_header, random);
         let parts = parts(kind, rate_hz, random);
         Written::new(kind, has_header, style, stamps, parts, random).layout()
     }

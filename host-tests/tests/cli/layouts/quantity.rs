@@ -147,7 +147,14 @@ impl Columns {
         values.iter_mut().flatten().for_each(|value| *value /= size);
         let scatter = scatter(&values[0]);
         // A logger writes a fixed number of decimals, or whole counts. One step is at most a third of the noise.
-        let step = scatter * random.log_between(0.003, 0.3);
+        let step = match quantity {
+            // All sensors of a kind have the same count.
+            Quantity::Rate if counts => 1.0 / 131.0 / size,
+            Quantity::Force if counts => G / 16_384.0 / size,
+            Quantity::AngleIncrement if counts => 1.0 / f64::from(1 << 26) / size,
+            Quantity::Field if counts => 0.15 / size,
+            _ => scatter * random.log_between(0.003, 0.3),
+        };
         if counts {
             columns.count = Some(step * size);
         }

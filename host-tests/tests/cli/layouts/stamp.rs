@@ -49,8 +49,14 @@ pub(super) struct Stamps {
 const EPOCH_S: u64 = 1_772_437_680;
 
 impl Stamps {
-    pub(super) fn new(rate_hz: f64, random: &mut Random) -> Self {
-        let manner = manner(rate_hz, random);
+    pub(super) fn new(rate_hz: f64, has_header: bool, random: &mut Random) -> Self {
+        let mut manner = manner(rate_hz, random);
+        // Without a name, nobody knows that a counter does not count a part of a second that is a power of ten.
+        if let Manner::Whole { per_second: 32_768 | 10_000, .. } = manner
+            && !has_header
+        {
+            manner = Manner::None;
+        }
         let (names, is_told) = names(manner, random);
         let start_ns = match manner {
             Manner::Whole {
@@ -270,7 +276,7 @@ fn names(manner: Manner, random: &mut Random) -> (Vec<String>, bool) {
         Manner::Whole {
             per_second: 32_768 | 10_000,
             ..
-        } => one(random.of(&["ticks", "SampleTimeFine", "tick", "timestamp"]), false),
+        } => one(random.of(&["ticks", "tick", "clock_ticks"]), false),
         Manner::Whole { per_second, .. } | Manner::Decimal { per_second, .. } => {
             let told = match per_second {
                 1 => ["time_s", "Time (s)", "t [s]", "elapsed (s)", "seconds"],

@@ -1,0 +1,193 @@
+//! Tells by the values beside it whether a column of numbers marks the sensors of which the rows are.
+//!
+//! Two sensors never have the same bias, and hardly ever the same noise. So the values of neighbouring rows with different
+//! marks differ by more than chance, whereas those beside a flag, an index of packets or a coarse temperature do not. Only
+//! neighbours are compared, so that no drift counts. Marks come in an order that the marks before them foretell.
+
+use csv::ByteRecord;
+use std::collections::BTreeMap;
+
+/// The most numbers that mark sensors. Chosen by hand.
+const MOST: usize = 8;
+
+/// Each mark stands in at least this share of the rows. Chosen by hand.
+const LEAST_SHARE: f64 = 0.05;
+
+/// The marks before a mark foretell it in at least this share of the rows. Chosen by hand.
+const FORETOLD: f64 = 0.85;
+
+/// The number of marks that foretell the next one.
+const BEFORE: usize = 3;
+
+/// The fewest pairs of neighbours that are compared.
+const LEAST_PAIRS: usize = 8;
+
+/// The sum of squares of the differences of columns, in their standard deviations, beyond which sensors differ: one part that
+/// chance never reaches, and one for each column. Chosen by hand.
+const DIFFERENT: (f64, f64) = (64.0, 8.0);
+
+/// Whether the numbers of a column mark the sensors of these rows.
+pub(super) fn are_marks(rows: &[ByteRecord], numbers: &[Vec<Option<f64>>], column: usize) -> bool {
+    let Some(marks) = numbers[column]
+        .iter()
+        .copied()
+        .collect::<Option<Vec<f64>>>()
+    else {
+        return false;
+    };
+    let mut counts: BTreeMap<u64, usize> = BTreeMap::new();
+    for mark in &marks {
+        *counts.entry(mark.to_bits()).or_default() += 1;
+        if counts.len() > MOST {
+            return false;
+        }
+    }
+    let least = LEAST_SHARE * rows.len() as f64;
+    let is_frequent = counts.values().all(|&count| count as f64 >= least);
+    if counts.len() < 2 || !is_frequent || !are_foretold(&marks) {
+        return false;
+    }
+    let others = numbers
+        .iter()
+        .enumerate()
+        .filter(|(other, _)| *other != column);
+    let others: Vec<&Vec<Option<f64>>> = others.map(|(_, values)| values).collect();
+    let keys: Vec<u64> = counts.into_keys().collect();
+    let bits: Vec<u64> = marks.iter().map(|mark| mark.to_bits()).collect();
+    let pairs =
+        (0..keys.len()).flat_map(|one| (one + 1..keys.len()).map(move |other| (one, other)));
+    let mut pairs = pairs.map(|(one, other)| [keys[one], keys[other]]);
+    pairs.any(|pair| are_different(&bits, &others, pair))
+}
+
+/// Whether the marks before a mark foretell it.
+fn are_foretold(marks: &[f64]) -> bool {
+    let bits: Vec<u64> = marks.iter().map(|mark| mark.to_bits()).collect();
+    let mut next: BTreeMap<&[u64], BTreeMap<u64, usize>> = BTreeMap::new();
+    for part in bits.windows(BEFORE + 1) {
+        *next
+            .entry(&part[..BEFORE])
+            .or_default()
+            .entry(part[BEFORE])
+            .or_default() += 1;
+    }
+    let usual: usize = next
+        .values()
+        .filter_map(|counts| counts.values().max())
+        .sum();
+    usual as f64 >= FORETOLD * bits.len().saturating_sub(BEFORE) as f64
+}
+
+/// Whether the values beside two marks differ.
+fn are_different(marks: &[u64], columns: &[&Vec<Option<f64>>], [one, other]: [u64; 2]) -> bool {
+    let (mut sum, mut compared) = (0.0, 0);
+    for values in columns {
+        let rising = values.windows(2).filter(|pair| pair[1] >= pair[0]).count();
+        let is_time = 10 * rising > 9 * values.len();
+        if is_time {
+            continue;
+        }
+        let means = difference_of_means(marks, values, [one, other]);
+        let noises = difference_of_noises(marks, values, [one, other]);
+        for square in [means, noises].into_iter().flatten() {
+            sum += square;
+            compared += 1;
+        }
+    }
+    sum > DIFFERENT.0 + DIFFERENT.1 * f64::from(compared)
+}
+
+/// The square of the mean difference between neighbouring rows with these marks, in its standard deviations.
+fn difference_of_means(
+    marks: &[u64],
+    values: &[Option<f64>],
+    [one, other]: [u64; 2],
+) -> Option<f64> {
+    let steps = marks.windows(2).zip(values.windows(2));
+    let steps = steps.filter(|(marks, _)| **marks == [one, other]);
+    let steps: Vec<f64> = steps
+        .filter_map(|(_, pair)| Some(pair[1]? - pair[0]?))
+        .collect();
+    let count = steps.len() as f64;
+    let mean = steps.iter().sum::<f64>() / count;
+    let squares: f64 = steps.iter().map(|step| (step - mean).powi(2)).sum();
+    let is_noise = steps.len() >= LEAST_PAIRS && squares > 0.0;
+    is_noise.then(|| mean.powi(2) * count * (count - 1.0) / squares)
+}
+
+/// The square of the logarithm of the ratio of the noises beside two marks, in its standard deviations.
+fn difference_of_noises(marks: &[u64], values: &[Option<f64>], pair: [u64; 2]) -> Option<f64> {
+    let noise = |wanted: u64| {
+        let of_mark = marks
+            .iter()
+            .zip(values)
+            .filter(|(mark, _)| **mark == wanted);
+        let of_mark: Vec<f64> = of_mark.filter_map(|(_, value)| *value).collect();
+        let squares: f64 = of_mark
+            .windows(2)
+            .map(|pair| (pair[1] - pair[0]).powi(2))
+            .sum();
+        let steps = of_mark.len().saturating_sub(1) as f64;
+        (steps >= LEAST_PAIRS as f64 && squares > 0.0).then_some((squares / steps, steps))
+    };
+    let ([one, other], [ones, others]) = {
+        let (one, other) = (noise(pair[0])?, noise(pair[1])?);
+        ([one.0, other.0], [one.1, other.1])
+    };
+    // The mean of n squares of differences of neighbours has a relative variance of 3/n.
+    Some((one / other).ln().powi(2) / (3.0 / ones + 3.0 / others))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn noise(state: &mut u32) -> f64 {
+        let mut uniform = || {
+            *state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            f64::from(*state >> 8) / f64::from(1 << 24) - 0.5
+        };
+        (0..12).map(|_| uniform()).sum()
+    }
+
+    /// Whether marks in this order are those of sensors, whose values have these biases and noises.
+    fn are_sensors(order: impl Fn(usize) -> usize, sensors: [(f64, f64); 2]) -> bool {
+        let mut state = 5;
+        let rows: Vec<[f64; 3]> = (0..600)
+            .map(|row| {
+                let which = order(row);
+                let (bias, scatter) = sensors[which % 2];
+                let drift = 0.01 * row as f64;
+                [
+                    which as f64,
+                    drift + bias + scatter * noise(&mut state),
+                    noise(&mut state),
+                ]
+            })
+            .collect();
+        let column = |column: usize| rows.iter().map(|row| Some(row[column])).collect();
+        let numbers: Vec<Vec<Option<f64>>> = (0..3).map(column).collect();
+        are_marks(&vec![ByteRecord::new(); 600], &numbers, 0)
+    }
+
+    #[test]
+    fn numbers_beside_which_values_differ_mark_sensors() {
+        let (one, biased, noisy) = ((0.0, 1.0), (2.0, 1.0), (0.0, 3.0));
+        let taking_turns = |row: usize| row % 2;
+        let in_blocks = |row: usize| row / 8 % 2;
+        for other in [biased, noisy] {
+            assert!(are_sensors(taking_turns, [one, other]));
+            assert!(are_sensors(in_blocks, [one, other]));
+        }
+    }
+
+    #[test]
+    fn an_index_a_flag_and_a_coarse_quantity_mark_no_sensors() {
+        let (one, other) = ((0.0, 1.0), (2.0, 1.0));
+        assert!(!are_sensors(|row| row % 2, [one, one]));
+        assert!(!are_sensors(|row| row % 25, [one, other]));
+        assert!(!are_sensors(|row| usize::from(row % 97 == 5), [one, other]));
+        assert!(!are_sensors(|row| row * row / 7 % 5, [one, one]));
+        assert!(!are_sensors(|row| row / 300, [one, one]));
+    }
+}

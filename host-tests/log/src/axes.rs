@@ -117,6 +117,9 @@ impl Columns {
             bare.sort_by_key(|&column| self.name(column).map(str::to_lowercase));
             return bare;
         }
+        if by_name.is_empty() && sensor == Sensor::Gyro {
+            return named(&names::is_increment);
+        }
         by_name
     }
 

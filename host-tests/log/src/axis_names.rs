@@ -86,15 +86,15 @@ fn sensor_of(name: &str) -> Option<Sensor> {
     }
 }
 
-/// Whether three names differ in the letter of their axis alone, so that they are the axes of something: `foo_x`, `foo_y`
-/// and `foo_z`.
+/// Whether three names differ in the letter or number of their axis alone, so that they are the axes of something: `foo_x`,
+/// `foo_y` and `foo_z`, or `foo[0]`, `foo[1]` and `foo[2]`.
 pub(super) fn are_triple(names: [&str; 3]) -> bool {
     let lower = names.map(|name| bare(name).to_lowercase());
     let [x, y, z] = lower.each_ref().map(|name| name.as_bytes());
     let differ: Vec<usize> = (0..x.len()).filter(|&i| y.get(i) != Some(&x[i])).collect();
     let is_last = x.len() == y.len() && y.len() == z.len();
     is_last
-        && matches!(differ.as_slice(), &[at] if [x[at], y[at], z[at]] == *b"xyz"
+        && matches!(differ.as_slice(), &[at] if [b"xyz", b"012", b"123"].contains(&&[x[at], y[at], z[at]])
             && x[..at] == z[..at] && x[at + 1..] == z[at + 1..])
 }
 

@@ -68,6 +68,22 @@ pub(super) fn is_other(name: &str) -> bool {
     words.iter().any(|word| name.contains(word))
         || ["i", "n", "id", "mx", "my", "mz", "mag", "lat", "lon", "alt"].contains(&first)
         || is_angle(&name)
+        || is_velocity(&name)
+}
+
+/// Whether a column is named like a velocity or its increment: `vel_x`, `vx`, `delta_velocity[0]`, `dv_y`, `Z_DELTVEL`. The
+/// velocity of an angle is none.
+fn is_velocity(name: &str) -> bool {
+    let name = name.to_lowercase();
+    let turns = ["ang", "rot", "turn", "gyr", "omega", "roll", "pitch", "yaw"];
+    let is_short = |token: &str| {
+        matches!(
+            token,
+            "v" | "vx" | "vy" | "vz" | "dv" | "dvx" | "dvy" | "dvz"
+        )
+    };
+    !turns.iter().any(|turn| name.contains(turn))
+        && (name.contains("vel") || name.contains("deltav") || tokens(&name).any(is_short))
 }
 
 /// Whether a column is named like a number that tells sensors apart: `I`, `instance`, `SensorId`, `device_id`, `imu`.
@@ -297,6 +313,20 @@ mod tests {
             "Euler_Y",
         ] {
             assert!(is_angle(name) && is_other(name), "{name}");
+        }
+        for name in [
+            "vel_x",
+            "velocity.y",
+            "vz",
+            "delta_velocity[0]",
+            "dv_y",
+            "Z_DELTVEL",
+            "deltaVelX_mps",
+        ] {
+            assert!(is_other(name), "{name}");
+        }
+        for name in ["ang_vel_x", "angular_velocity.y", "value", "v1", "level"] {
+            assert!(!is_other(name), "{name}");
         }
         for name in [
             "roll_rate",

@@ -11,7 +11,7 @@ use super::{
     preamble::{Preamble, values},
     records::{LONGEST_ROW, Records},
     source, source_marks,
-    table::{Ended, Table, Visitor, after_stop},
+    table::{Ended, Stop, Table, Visitor, after_stop},
 };
 use crate::RowChoice;
 use crate::failure::{Failure, Place, quoted};
@@ -244,6 +244,11 @@ impl Csv {
         for (axis, column) in axes.iter().enumerate() {
             if let Err(stop) = visitor.visit(axis, Text(field(column.column))) {
                 let place = || self.row_at(byte());
+                if let Stop::Clock(flaw) = &stop
+                    && let Some(failure) = self.columns.of_other_sensor(&field, flaw, place)
+                {
+                    return Err(failure);
+                }
                 return after_stop(visitor, (axis, &stop), axes, place).map(|goes_on| !goes_on);
             }
         }

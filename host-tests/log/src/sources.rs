@@ -2,6 +2,7 @@
 
 use super::{
     columns::{Columns, Look},
+    field::{Field as _, Flaw, Text},
     names,
 };
 use crate::failure::{Failure, Place, quoted};
@@ -12,6 +13,9 @@ const MOST: usize = 32;
 
 /// The most marks that a message shows.
 const MOST_SHOWN: usize = 8;
+
+/// A larger number that stands in the first rows may be the seconds of a time. Chosen by hand.
+const MOST_NUMBER: f64 = 1e8;
 
 /// Rows change from one sensor to another at least so often among the first ones. A label of what is done changes less often.
 /// Chosen by hand.
@@ -74,6 +78,50 @@ impl Columns {
             }
             _ => Vec::new(),
         }
+    }
+
+    /// The failure of stamps at a row that is of another sensor than the first rows: a column of names or of numbers of sensors
+    /// has another value there. `None` if no column has.
+    pub(super) fn of_other_sensor<'a>(
+        &self,
+        field: &impl Fn(usize) -> &'a [u8],
+        flaw: &Flaw,
+        place: impl FnOnce() -> Place,
+    ) -> Option<Failure> {
+        let first = |column: usize| -> Option<String> {
+            let head = self.heads.get(column)?;
+            match self.looks[column] {
+                Look::Text => self.tags.get(column)?.first().cloned(),
+                Look::Number
+                    if head
+                        .iter()
+                        .all(|one| *one == head[0] && one.abs() < MOST_NUMBER) =>
+                {
+                    Some(head.first()?.to_string())
+                }
+                _ => None,
+            }
+        };
+        let is_other = |first: &str, text: &[u8]| {
+            let number = Text(text).number().ok();
+            first.as_bytes() != text && number.is_none_or(|number| first.parse() != Ok(number))
+        };
+        let mut columns = (0..self.looks.len()).filter_map(|column| Some((column, first(column)?)));
+        let (column, first) =
+            columns.find(|(column, first)| is_other(first, field(*column).trim_ascii()))?;
+        let called = match self.name(column) {
+            Some(name) => name.to_owned(),
+            None => (column + 1).to_string(),
+        };
+        let other = quoted(field(column).trim_ascii());
+        Some(place().failure(
+            format!(
+                "{}, where column {called} changes from {} to {other}",
+                flaw.what,
+                quoted(first.as_bytes())
+            ),
+            format!("keep the rows of one sensor, such as with --rows {called}={first}"),
+        ))
     }
 
     /// Checks that no column of numbers has brackets or the like around its values, by which it would be lost.

@@ -91,7 +91,7 @@ impl Columns {
 
     /// The columns that are axes of a sensor by the definition of the log's format, or else by their names, or else
     /// because they are named `x`, `y` and `z` and the file says of which sensor they are.
-    fn axes_of(&self, sensor: Sensor) -> Vec<usize> {
+    pub(super) fn axes_of(&self, sensor: Sensor) -> Vec<usize> {
         let all = 0..self.looks.len();
         if !self.defined.is_empty() {
             let of_sensor = |&column: &usize| self.defined.contains(&(column, sensor));

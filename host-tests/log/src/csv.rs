@@ -5,6 +5,7 @@ use super::{
     dialect::Dialect,
     edit::{Edit, Kept},
     field::{Field, Stamp, Text},
+    filled::Filled,
     glue::Glue,
     lines::{Cut, Lines},
     metadata::Metadata,
@@ -13,8 +14,8 @@ use super::{
     source, source_marks,
     table::{Ended, Stop, Table, Visitor, after_stop},
 };
-use crate::RowChoice;
 use crate::failure::{Failure, Place, quoted};
+use crate::{Options, RowChoice};
 use csv::ByteRecord;
 use indicatif::ProgressBar;
 use std::{
@@ -53,8 +54,8 @@ pub(super) struct Csv {
 }
 
 impl Csv {
-    pub(super) fn open(path: &Path, gzip: bool, rows: Option<&RowChoice>) -> Result<Self, Failure> {
-        Self::open_as(path, path, gzip, rows)
+    pub(super) fn open(path: &Path, gzip: bool, options: &Options) -> Result<Self, Failure> {
+        Self::open_as(path, path, gzip, options)
     }
 
     /// Opens a text that was made of another file, which messages name.
@@ -62,7 +63,7 @@ impl Csv {
         path: &Path,
         text: &Path,
         gzip: bool,
-        rows: Option<&RowChoice>,
+        options: &Options,
     ) -> Result<Self, Failure> {
         let preamble = Preamble::read(path, text, gzip)?;
         let mut table = Self {
@@ -96,8 +97,9 @@ impl Csv {
         if !table.look(preamble.width)? {
             return Err(Place::file(path).failure("no rows", "record some samples"));
         }
-        if let Some(choice) = rows {
-            table.keep_rows(choice, preamble.width)?;
+        match &options.rows {
+            Some(choice) => table.keep_rows(choice, preamble.width)?,
+            None => table.keep_rows_of_axes(options, preamble.width)?,
         }
         Ok(table)
     }
@@ -125,7 +127,7 @@ impl Csv {
     fn keep_rows(&mut self, choice: &RowChoice, width: usize) -> Result<(), Failure> {
         self.edit.kept = Some(Kept {
             column: self.columns.find(&self.path, &choice.column)?,
-            value: choice.value.clone(),
+            value: Some(choice.value.clone()),
             dialect: self.dialect,
         });
         if self.look(width)? {
@@ -138,6 +140,21 @@ impl Csv {
             format!("no row has {value} in column {column}"),
             "give another --rows COLUMN=VALUE",
         ))
+    }
+
+    /// Leaves out the rows of other sensors, in which the axes have no value.
+    fn keep_rows_of_axes(&mut self, options: &Options, width: usize) -> Result<(), Failure> {
+        let rows = self.first_records()?;
+        let filled = Filled::of_rows(&rows, width);
+        let Some(column) = filled.column_of_axes(&self.columns, &self.path, options)? else {
+            return Ok(());
+        };
+        self.edit.kept = Some(Kept {
+            column,
+            value: None,
+            dialect: self.dialect,
+        });
+        self.look(width).map(|_| ())
     }
 
     /// The text from the first row on, with one delimiter between values.
@@ -269,6 +286,17 @@ impl Table for Csv {
         let note = "the last row has no line end: it may be cut off";
         let mut notes: Vec<String> = (!self.is_whole).then(|| note.into()).into_iter().collect();
         notes.extend(self.edit.glue.iter().map(Glue::said));
+        if let Some(Kept {
+            column,
+            value: None,
+            ..
+        }) = self.edit.kept
+        {
+            let called = self.columns.called(column);
+            notes.push(format!(
+                "rows without a value of {called} are those of another sensor: left out"
+            ));
+        }
         let (gaps, samples) = self.lost.get();
         if gaps > 0 {
             let comments = if gaps == 1 {

@@ -19,7 +19,8 @@ pub(super) struct Edit {
 #[derive(Clone, Debug)]
 pub(super) struct Kept {
     pub(super) column: usize,
-    pub(super) value: String,
+    /// The value, or `None` for any.
+    pub(super) value: Option<String>,
     pub(super) dialect: Dialect,
 }
 
@@ -41,8 +42,11 @@ impl Kept {
         let Some(field) = field.map(<[u8]>::trim_ascii) else {
             return false;
         };
+        let Some(value) = &self.value else {
+            return !field.trim_ascii().is_empty() && field != b"\"\"";
+        };
         let number = |text: &[u8]| Text(text).number().ok();
-        let wanted = self.value.trim().as_bytes();
+        let wanted = value.trim().as_bytes();
         field == wanted || number(field).is_some_and(|one| number(wanted) == Some(one))
     }
 }
@@ -92,7 +96,10 @@ impl Read for Edited {
             if longest.read_until(b'\n', &mut self.ready)? == 0 {
                 return Ok(0);
             }
-            let end = self.ready.trim_ascii_end().len();
+            // A tab at the end may stand for an empty value.
+            let is_end = |byte: &u8| matches!(byte, b'\n' | b'\r' | b' ');
+            let end = self.ready.iter().rposition(|byte| !is_end(byte));
+            let end = end.map_or(0, |last| last + 1);
             let line = self.edit.line(&self.ready[..end]);
             let is_whole = self.ready.ends_with(b"\n");
             self.ready = line;

@@ -172,12 +172,12 @@ fn read_format(
 ) -> Result<(Log, Vec<Axis>), Failure> {
     match format {
         Format::Text { gzip } => {
-            let text = csv::Csv::open(path, gzip, options.rows.as_ref())?;
+            let text = csv::Csv::open(path, gzip, options)?;
             read_table(&text, path, options, wanted, progress)
         }
         Format::Parts => {
             let (joined, note) = parts::join(path, progress)?;
-            let text = csv::Csv::open_as(path, &joined, false, options.rows.as_ref())?;
+            let text = csv::Csv::open_as(path, &joined, false, options)?;
             let (mut log, rest) = read_table(&text, path, options, wanted, progress)?;
             log.notes.insert(0, note);
             Ok((log, rest))
@@ -230,7 +230,7 @@ fn read_converted(
         Some(left_out) => failure.and(left_out),
         None => failure,
     };
-    let text = csv::Csv::open_as(path, &table.text, false, options.rows.as_ref());
+    let text = csv::Csv::open_as(path, &table.text, false, options);
     let text = text.map_err(explained)?;
     let read = read_table(&text, path, options, wanted, progress);
     let (mut log, rest) = read.map_err(explained)?;

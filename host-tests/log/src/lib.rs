@@ -118,6 +118,7 @@ mod faults;
 mod few;
 mod field;
 mod file;
+mod filled;
 mod foreign;
 mod glue;
 mod grid;

@@ -302,7 +302,7 @@ fn sample(
 /// The dialect, the number of values in a row, and the place of the first row among these lines.
 ///
 /// The last lines decide the dialect and which columns hold numbers. The first row is the first one with that many
-/// values that has numbers in at least half of these columns.
+/// values that has numbers in at least half of these columns, or numbers and empty fields alone, as a row of another sensor has.
 fn first_row(path: &Path, rows: &[&Line]) -> Result<(Dialect, usize, usize), Failure> {
     let judges: Vec<&[u8]> = rows
         .iter()
@@ -332,7 +332,8 @@ fn first_row(path: &Path, rows: &[&Line]) -> Result<(Dialect, usize, usize), Fai
             .iter()
             .filter(|&&column| is_value(&record, column))
             .count();
-        record.len() == width && with > 0 && 2 * with >= numeric.len()
+        let has_no_text = || record.iter().all(|field| Kind::of(field) != Kind::Text);
+        record.len() == width && with > 0 && (2 * with >= numeric.len() || has_no_text())
     };
     if let Some(first) = rows.iter().position(is_row) {
         return Ok((dialect, width, first));

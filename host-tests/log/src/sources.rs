@@ -11,6 +11,9 @@ use std::path::Path;
 /// The most sensors whose rows are recognised in one table. More values are those of a quantity. Chosen by hand.
 const MOST: usize = 32;
 
+/// The same for marks that may be numbers, or for which the rows need not change often. Chosen by hand.
+const MOST_NUMBERS: usize = 8;
+
 /// The most marks that a message shows.
 const MOST_SHOWN: usize = 8;
 
@@ -20,6 +23,10 @@ const MOST_NUMBER: f64 = 1e8;
 /// Rows change from one sensor to another at least so often among the first ones. A label of what is done changes less often.
 /// Chosen by hand.
 const CHANGES: usize = 4;
+
+fn is_word(mark: &str) -> bool {
+    mark.starts_with(char::is_alphabetic)
+}
 
 impl Columns {
     /// Checks that the rows are those of one sensor: no column of names or of numbers of sensors changes to and fro.
@@ -33,8 +40,12 @@ impl Columns {
             marks.sort_unstable();
             marks.dedup();
             let changes = rows.windows(2).filter(|pair| pair[0] != pair[1]).count();
+            // Many marks come again and again, unlike the values of a quantity.
+            let is_again = marks.len() <= MOST_NUMBERS || changes >= CHANGES * marks.len();
             let is_mixed = (2..=MOST).contains(&marks.len())
                 && changes >= CHANGES
+                && is_again
+                && (marks.len() <= MOST_NUMBERS || marks.iter().all(|mark| is_word(mark)))
                 && 2 * marks.len() <= rows.len();
             if !is_mixed {
                 continue;

@@ -349,7 +349,12 @@ impl Written {
         if separator == ";" && glue == Glue::SemicolonBehind {
             separator = ",";
         }
-        let decimal_comma = [";", "\t"].contains(&separator) && random.chance(0.3);
+        if glue == Glue::Quotes && separator == ", " {
+            separator = ",";
+        }
+        // Firmware does not write decimal commas.
+        let is_plain = matches!(glue, Glue::None | Glue::Quotes);
+        let decimal_comma = is_plain && [";", "\t"].contains(&separator) && random.chance(0.3);
         let order = match random.below(6) {
             0..4 => Order::ByTime,
             4 => Order::Blocks(random.of(&[2, 8, 25, 32])),
@@ -441,9 +446,14 @@ impl Written {
 
     /// The columns in front of the values.
     fn in_front(&self) -> usize {
+        self.before_stamps() + self.stamps.columns() + usize::from(self.has_key() && self.key_place == 1)
+    }
+
+    /// The columns in front of the stamps.
+    fn before_stamps(&self) -> usize {
         usize::from(self.has_index)
-            + self.stamps.columns()
-            + usize::from(self.has_key() && self.key_place < 2)
+            + usize::from(self.glue == Glue::Nmea || self.glue.has_time())
+            + usize::from(self.has_key() && self.key_place == 0)
     }
 
     /// A row of all columns: stamps and key stand where they are wanted.
@@ -663,7 +673,7 @@ impl Written {
         let resolution = if self.glue.has_time() { 1e-3 } else { self.stamps.resolution() };
         let rate_error = 1e-3_f64.max(2.0 * resolution * rate_hz / rows);
         let is_lossy = self.parts[0].kept.len() < self.parts[0].moments_ns.len();
-        let before = usize::from(self.has_index) + usize::from(self.has_key() && self.key_place == 0);
+        let before = self.before_stamps();
         let key = self.has_key().then(|| {
             let place = match self.key_place {
                 0 => usize::from(self.has_index) + 1,
@@ -691,7 +701,11 @@ impl Written {
             sources,
             key,
             time: match self.stamps.manner {
-                Manner::None => None,
+                Manner::None
+                | Manner::Whole {
+                    per_second: 32_768 | 10_000,
+                    ..
+                } => None,
                 Manner::Week(_) | Manner::TwoColumns(_) => Some(before + 2),
                 _ => Some(before + 1),
             },

@@ -153,6 +153,12 @@ fn is_checksum(text: &[u8]) -> bool {
         if (1..=8).contains(&digits.len()) && digits.iter().all(u8::is_ascii_hexdigit))
 }
 
+/// Whether a text is an opening bracket, or several.
+fn are_brackets(text: &[u8]) -> bool {
+    let text = text.trim_ascii();
+    !text.is_empty() && text.iter().all(|byte| b"[({<".contains(byte))
+}
+
 /// The longest field that is looked at: each place of it may begin a number.
 const LONGEST: usize = 256;
 
@@ -162,6 +168,16 @@ fn split(field: &[u8]) -> Option<(&[u8], f64)> {
         return None;
     }
     let starts = (1..field.len()).filter(|&start| begins_number(&field[start]));
+    // A time in brackets.
+    let times = starts
+        .clone()
+        .filter(|&start| are_brackets(&field[..start]));
+    if let Some(start) = times
+        .into_iter()
+        .find(|&start| Kind::of(&field[start..]) == Kind::Time)
+    {
+        return Some((&field[..start], f64::NAN));
+    }
     let mut numbers = starts.filter_map(|start| {
         let number = Text(&field[start..]).number().ok()?;
         Some((&field[..start], number))
@@ -182,7 +198,9 @@ fn head(records: &[Vec<Vec<u8>>]) -> Option<Head> {
     let first = records.iter().filter_map(|record| split(record.first()?));
     let (heads, numbers): (Vec<&[u8]>, Vec<f64>) = first.unzip();
     let different: BTreeSet<u64> = numbers.iter().map(|number| number.to_bits()).collect();
-    let are_values = different.len() > NUMBERED || numbers.iter().any(|one| one.fract() != 0.0);
+    let are_values = different.len() > NUMBERED
+        || numbers.iter().any(|one| one.fract() != 0.0)
+        || heads.iter().all(|head| are_brackets(head));
     if !are_values {
         return None;
     }
@@ -274,6 +292,16 @@ mod tests {
             ("gyro1: X,2,3", "-0.25,2,3", "\"gyro1: \" before its values"),
             ("2,3,X;", "2,3,-0.25", "\";\" behind them"),
             ("2,3,X*hh", "2,3,-0.25", "a checksum behind them"),
+            (
+                "(2405,X,2)",
+                "2405,-0.25,2",
+                "\"(\" before its values, \")\" behind them",
+            ),
+            (
+                "[T,X,2]",
+                "12:30:00.000,-0.25,2",
+                "\"[\" before its values, \"]\" behind them",
+            ),
             (
                 "[X, 2, 3.5]",
                 "-0.25, 2, 3.5",

@@ -1,5 +1,7 @@
 //! Logs as text, in which each row is a sample.
 
+mod far;
+
 use super::{
     columns::{AxisColumn, Columns, Look},
     dialect::Dialect,
@@ -101,6 +103,9 @@ impl Csv {
             Some(choice) => table.keep_rows(choice, preamble.width)?,
             None => table.keep_rows_of_axes(options, preamble.width)?,
         }
+        if options.rows.is_none() && options.rate_hz.is_none() {
+            table.check_turns()?;
+        }
         Ok(table)
     }
 
@@ -144,7 +149,10 @@ impl Csv {
 
     /// Leaves out the rows of other sensors, in which the axes have no value.
     fn keep_rows_of_axes(&mut self, options: &Options, width: usize) -> Result<(), Failure> {
-        let rows = self.first_records()?;
+        let mut rows = self.first_records()?;
+        let last = self.last_records();
+        self.check_far_sources(&rows, &last)?;
+        rows.extend(last);
         let filled = Filled::of_rows(&rows, width);
         let Some(column) = filled.column_of_axes(&self.columns, &self.path, options)? else {
             return Ok(());
@@ -155,6 +163,22 @@ impl Csv {
             dialect: self.dialect,
         });
         self.look(width).map(|_| ())
+    }
+
+    /// Checks that the rows do not take turns between sensors that no column tells apart.
+    fn check_turns(&self) -> Result<(), Failure> {
+        let rows = self.first_records()?;
+        let column = |column: usize| rows.iter().map(|row| number(row, column)).collect();
+        let numbers: Vec<Vec<Option<f64>>> = (0..self.columns.looks.len()).map(column).collect();
+        let Some(turns) = source_marks::turns(&numbers) else {
+            return Ok(());
+        };
+        // A column that tells the sensors apart says more.
+        self.columns.check_sources(&self.path)?;
+        Err(Place::file(&self.path).failure(
+            format!("every {} row is unlike those beside it, as rows of several sensors are", ["second", "third"][turns - 2]),
+            "write the rows of one sensor to a file of their own, or give --rate if it is one sensor",
+        ))
     }
 
     /// The text from the first row on, with one delimiter between values.

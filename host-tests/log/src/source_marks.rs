@@ -60,6 +60,36 @@ pub(super) fn are_marks(rows: &[ByteRecord], numbers: &[Vec<Option<f64>>], colum
     pairs.any(|pair| are_different(&bits, &others, pair))
 }
 
+/// The square of the difference of means, in standard deviations, beyond which rows that take turns are those of several
+/// sensors, in at least two columns. Chosen by hand.
+const TURNS: f64 = 144.0;
+
+/// The rows in which turns are looked for. A lost row ends an order of turns.
+const TURN_ROWS: usize = 256;
+
+/// The number of rows after which these come again, if they take turns between sensors: 2 or 3.
+pub(super) fn turns(numbers: &[Vec<Option<f64>>]) -> Option<usize> {
+    let columns = numbers
+        .iter()
+        .map(|values| &values[..values.len().min(TURN_ROWS)]);
+    let columns: Vec<&[Option<f64>]> = columns.filter(|values| !is_time(values)).collect();
+    [2, 3].into_iter().find(|&turns| {
+        let differs = |values: &&&[Option<f64>]| {
+            let marks: Vec<u64> = (0..values.len()).map(|row| (row % turns) as u64).collect();
+            let differences = (1..turns as u64)
+                .filter_map(|mark| difference_of_means(&marks, values, [mark - 1, mark]));
+            differences.fold(0.0, f64::max) > TURNS
+        };
+        columns.iter().filter(differs).count() >= 2
+    })
+}
+
+/// Whether values rise as a time does.
+fn is_time(values: &[Option<f64>]) -> bool {
+    let rising = values.windows(2).filter(|pair| pair[1] >= pair[0]).count();
+    10 * rising > 9 * values.len()
+}
+
 /// Whether the marks before a mark foretell it.
 fn are_foretold(marks: &[f64]) -> bool {
     let bits: Vec<u64> = marks.iter().map(|mark| mark.to_bits()).collect();
@@ -82,9 +112,7 @@ fn are_foretold(marks: &[f64]) -> bool {
 fn are_different(marks: &[u64], columns: &[&Vec<Option<f64>>], [one, other]: [u64; 2]) -> bool {
     let (mut sum, mut compared) = (0.0, 0);
     for values in columns {
-        let rising = values.windows(2).filter(|pair| pair[1] >= pair[0]).count();
-        let is_time = 10 * rising > 9 * values.len();
-        if is_time {
+        if is_time(values) {
             continue;
         }
         let means = difference_of_means(marks, values, [one, other]);
@@ -179,6 +207,23 @@ mod tests {
             assert!(are_sensors(taking_turns, [one, other]));
             assert!(are_sensors(in_blocks, [one, other]));
         }
+    }
+
+    #[test]
+    fn rows_that_take_turns_are_those_of_sensors() {
+        let mut state = 9;
+        let mut column = |turns: usize, bias: f64| -> Vec<Option<f64>> {
+            let value =
+                |row: usize| Some(if row % turns == 1 { bias } else { 0.0 } + noise(&mut state));
+            (0..600).map(value).collect()
+        };
+        let time: Vec<Option<f64>> = (0..600).map(|row| Some(f64::from(row / 2))).collect();
+        for turns in [2, 3] {
+            let columns = [time.clone(), column(turns, 3.0), column(turns, -4.0)];
+            assert_eq!(super::turns(&columns), Some(turns));
+        }
+        let columns = [time, column(2, 0.0), column(2, 0.0)];
+        assert_eq!(super::turns(&columns), None);
     }
 
     #[test]

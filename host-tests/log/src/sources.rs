@@ -102,7 +102,10 @@ impl Columns {
         let first = |column: usize| -> Option<String> {
             let head = self.heads.get(column)?;
             match self.looks[column] {
-                Look::Text => self.tags.get(column)?.first().cloned(),
+                Look::Text => {
+                    let first = self.tags.get(column)?.first().cloned();
+                    first.filter(|first| !first.is_empty())
+                }
                 Look::Number
                     if head
                         .iter()

@@ -62,7 +62,13 @@ pub(super) fn outcome(layout: &Layout, folder: &Path) -> (Outcome, String) {
             Judged::Right if given.contains("assumed") => Outcome::Assumed,
             Judged::Right if given.is_empty() => Outcome::Right,
             Judged::Right => Outcome::Asked(is_spelled_out),
-            Judged::Scaled if log.notes.iter().any(|note| note.contains("--unit)") || note.contains("--scale)")) && given.insert("assumed") => {
+            Judged::Scaled
+                if log
+                    .notes
+                    .iter()
+                    .any(|note| note.contains("--unit)") || note.contains("--scale)"))
+                    && given.insert("assumed") =>
+            {
                 give_unit(source.unwrap(), &mut options);
                 continue;
             }
@@ -81,7 +87,12 @@ fn described(log: &Log) -> String {
         .zip(noises(log))
         .map(|(axis, noise)| format!("{} {noise:.5}", axis.name))
         .collect();
-    format!("read {} at {:.4} Hz in {}", axes.join(", "), log.rate_hz, log.unit)
+    format!(
+        "read {} at {:.4} Hz in {}",
+        axes.join(", "),
+        log.rate_hz,
+        log.unit
+    )
 }
 
 /// White noise by axis, in deg/s/√Hz or m/s²/√Hz.
@@ -114,7 +125,10 @@ fn judged(log: &Log, layout: &Layout, given: &BTreeSet<&'static str>) -> Judged 
     }
     let is_chosen = given.contains("rows") || given.contains("columns");
     let sources = if is_chosen { one } else { all };
-    let mut expected: Vec<f64> = sources.iter().flat_map(|source| source.noise.clone()).collect();
+    let mut expected: Vec<f64> = sources
+        .iter()
+        .flat_map(|source| source.noise.clone())
+        .collect();
     let mut found = noises(log);
     if expected.len() != found.len()
         || (log.rate_hz / sources[0].rate_hz - 1.0).abs() > layout.rate_error
@@ -127,7 +141,10 @@ fn judged(log: &Log, layout: &Layout, given: &BTreeSet<&'static str>) -> Judged 
     }
     expected.sort_by(f64::total_cmp);
     found.sort_by(f64::total_cmp);
-    let ratios = expected.iter().zip(&found).map(|(expected, found)| found / expected);
+    let ratios = expected
+        .iter()
+        .zip(&found)
+        .map(|(expected, found)| found / expected);
     let ratios: Vec<f64> = ratios.collect();
     let near = |factor: f64| {
         ratios
@@ -157,12 +174,18 @@ fn answer(
     options: &mut Options,
     given: &mut BTreeSet<&'static str>,
 ) -> Option<bool> {
-    let asks = |option: &str| line.contains(&format!("--{option} ")) || line.ends_with(&format!("--{option}"));
+    let asks = |option: &str| {
+        line.contains(&format!("--{option} ")) || line.ends_with(&format!("--{option}"))
+    };
     if let Some((column, name)) = &layout.key
         && asks("rows")
         && given.insert("rows")
     {
-        let by_name = if name.is_empty() { column.to_string() } else { name.clone() };
+        let by_name = if name.is_empty() {
+            column.to_string()
+        } else {
+            name.clone()
+        };
         let rows = format!("{by_name}={}", source.id);
         options.rows = Some(rows.parse().unwrap());
         let is_listed = line.contains(&format!("\"{}\"", source.id));
@@ -173,10 +196,21 @@ fn answer(
         return Some(line.contains("--sensor accel"));
     }
     if asks("columns") && given.insert("columns") {
-        let names = if layout.kind == Kind::Forces { ["ax", "ay", "az"] } else { ["gx", "gy", "gz"] };
+        let names = if layout.kind == Kind::Forces {
+            ["ax", "ay", "az"]
+        } else {
+            ["gx", "gy", "gz"]
+        };
         let choices = names.iter().zip(&source.columns);
-        let choices: Vec<String> = choices.map(|(name, column)| format!("{name}={column}")).collect();
-        options.columns = Some(choices.iter().map(|choice| choice.parse().unwrap()).collect());
+        let choices: Vec<String> = choices
+            .map(|(name, column)| format!("{name}={column}"))
+            .collect();
+        options.columns = Some(
+            choices
+                .iter()
+                .map(|choice| choice.parse().unwrap())
+                .collect(),
+        );
         return Some(line.contains(&choices.join(",")));
     }
     if (asks("unit") || asks("scale")) && given.insert("unit") {

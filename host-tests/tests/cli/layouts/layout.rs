@@ -79,9 +79,9 @@ pub(super) struct Layout {
 }
 
 const RATES: [f64; 36] = [
-    20.0, 25.0, 31.25, 50.0, 52.0, 59.5, 60.0, 75.0, 100.0, 104.0, 119.0, 120.0, 125.0, 128.0, 148.5, 200.0, 208.0,
-    225.0, 238.0, 250.0, 256.0, 400.0, 416.0, 476.0, 500.0, 512.0, 562.5, 800.0, 833.0, 952.0, 1000.0, 1125.0, 1600.0,
-    3200.0, 4000.0, 8000.0,
+    20.0, 25.0, 31.25, 50.0, 52.0, 59.5, 60.0, 75.0, 100.0, 104.0, 119.0, 120.0, 125.0, 128.0,
+    148.5, 200.0, 208.0, 225.0, 238.0, 250.0, 256.0, 400.0, 416.0, 476.0, 500.0, 512.0, 562.5,
+    800.0, 833.0, 952.0, 1000.0, 1125.0, 1600.0, 3200.0, 4000.0, 8000.0,
 ];
 
 /// A part of the log: the columns of one device or of one sensor, and the rows that were kept.
@@ -149,11 +149,24 @@ fn quantities(kind: Kind, random: &mut Random) -> Vec<Quantity> {
             &[AngleIncrement, Force],
             &[Counter, AngleIncrement, VelocityIncrement, Temperature],
         ],
-        Kind::Forces => &[&[Force], &[Force, Field], &[Force, Temperature], &[Counter, Force]],
-        Kind::Angles => &[&[Angle], &[Angle, Force], &[Attitude, Angle], &[Angle, Velocity]],
-        Kind::Devices | Kind::Twins | Kind::Keyless => {
-            &[&[Rate], &[Rate, Force], &[Force, Rate], &[Rate, Temperature]]
-        }
+        Kind::Forces => &[
+            &[Force],
+            &[Force, Field],
+            &[Force, Temperature],
+            &[Counter, Force],
+        ],
+        Kind::Angles => &[
+            &[Angle],
+            &[Angle, Force],
+            &[Attitude, Angle],
+            &[Angle, Velocity],
+        ],
+        Kind::Devices | Kind::Twins | Kind::Keyless => &[
+            &[Rate],
+            &[Rate, Force],
+            &[Force, Rate],
+            &[Rate, Temperature],
+        ],
         _ => &[
             &[Rate],
             &[Rate],
@@ -180,7 +193,9 @@ fn quantities(kind: Kind, random: &mut Random) -> Vec<Quantity> {
             &[Force, Rate, Status],
             &[Rate, Pressure, Temperature],
             &[Counter, Rate, Force, Field, Temperature, Pressure, Status],
-            &[Label, Attitude, Covariance, Rate, Covariance, Force, Covariance],
+            &[
+                Label, Attitude, Covariance, Rate, Covariance, Force, Covariance,
+            ],
             &[Constant, Rate, Temperature, Status],
             &[Constant, Rate, Force],
             &[Rate, Force, Label],
@@ -197,7 +212,11 @@ fn ids(random: &mut Random) -> [&'static str; 3] {
         ["17", "42", "99"],
         ["0x68", "0x69", "0x6A"],
         ["left", "right", "pelvis"],
-        ["D4:22:CD:00:12:34", "D4:22:CD:00:12:35", "D4:22:CD:00:13:01"],
+        [
+            "D4:22:CD:00:12:34",
+            "D4:22:CD:00:12:35",
+            "D4:22:CD:00:13:01",
+        ],
         ["00B42D4F", "00B42D50", "00B42D63"],
         ["imu0", "imu1", "imu2"],
         ["SN-1041", "SN-1042", "SN-1050"],
@@ -216,7 +235,11 @@ fn tags(random: &mut Random) -> [&'static str; 3] {
         ["G", "A", "M"],
         ["4", "1", "2"],
         ["GYRO", "ACCL", "MAGN"],
-        ["android.sensor.gyroscope", "android.sensor.accelerometer", "android.sensor.magnetic_field"],
+        [
+            "android.sensor.gyroscope",
+            "android.sensor.accelerometer",
+            "android.sensor.magnetic_field",
+        ],
         ["Gyroscope", "Accelerometer", "Magnetometer"],
         ["0x02", "0x01", "0x03"],
         ["imu_gyr", "imu_acc", "imu_mag"],
@@ -255,12 +278,20 @@ fn parts(kind: Kind, rate_hz: f64, random: &mut Random) -> Vec<Part> {
             samples: (samples as f64 * factor) as usize,
             counts,
         };
-        let set = if is_apart { &set[device..=device] } else { &set[..] };
+        let set = if is_apart {
+            &set[device..=device]
+        } else {
+            &set[..]
+        };
         let columns = set
             .iter()
             .map(|&(quantity, unit)| Columns::new(quantity, unit, style, random))
             .collect();
-        let kept = kept(style.samples, if kind == Kind::Twins { 9 } else { loss }, random);
+        let kept = kept(
+            style.samples,
+            if kind == Kind::Twins { 9 } else { loss },
+            random,
+        );
         let interval_ns = 1e9 / style.rate_hz;
         let late = if is_in_step {
             0.0
@@ -288,7 +319,10 @@ fn parts(kind: Kind, rate_hz: f64, random: &mut Random) -> Vec<Part> {
 fn kept(samples: usize, loss: usize, random: &mut Random) -> Vec<usize> {
     let mut is_kept = vec![true; samples];
     match loss {
-        0 => is_kept.iter_mut().skip(20).for_each(|kept| *kept = !random.chance(0.002)),
+        0 => is_kept
+            .iter_mut()
+            .skip(20)
+            .for_each(|kept| *kept = !random.chance(0.002)),
         1 => {
             for _ in 0..3 {
                 let (start, length) = (20 + random.below(samples - 100), 2 + random.below(40));
@@ -333,7 +367,10 @@ impl Written {
         random: &mut Random,
     ) -> Self {
         // Counts have no unit.
-        let has_counts = parts.iter().flat_map(|part| &part.columns).any(|columns| columns.count.is_some());
+        let has_counts = parts
+            .iter()
+            .flat_map(|part| &part.columns)
+            .any(|columns| columns.count.is_some());
         let style = if has_counts { UnitStyle::None } else { style };
         let glue = match kind {
             Kind::Single | Kind::Increments | Kind::Forces => {
@@ -343,7 +380,9 @@ impl Written {
         };
         let is_dated = matches!(stamps.manner, Manner::Date(' ', ..));
         let mut separator = random.of(&[",", ",", ",", ",", ", ", ";", "\t", " ", "  "]);
-        if separator.starts_with(' ') && (is_dated || kind == Kind::Sparse || glue == Glue::CommaBehind) {
+        if separator.starts_with(' ')
+            && (is_dated || kind == Kind::Sparse || glue == Glue::CommaBehind)
+        {
             separator = ",";
         }
         if separator == ";" && glue == Glue::SemicolonBehind {
@@ -362,8 +401,18 @@ impl Written {
         };
         let key_names: &[&str] = match kind {
             Kind::Tags => &["sensor", "type", "tag", "name", "kind", "sensor_type"],
-            _ => &["SensorId", "id", "device", "sensor", "imu", "addr", "mac", "node", "source", "dev_id"],
+            _ => &[
+                "SensorId", "id", "device", "sensor", "imu", "addr", "mac", "node", "source",
+                "dev_id",
+            ],
         };
+        let mut stamps = stamps;
+        if separator.starts_with(' ') {
+            stamps
+                .names
+                .iter_mut()
+                .for_each(|name| *name = name.replace(' ', "_"));
+        }
         let mut written = Self {
             kind,
             has_header,
@@ -377,7 +426,11 @@ impl Written {
             key_place: random.below(3),
             key_name: random.of(key_names),
             has_index: has_header && separator == "," && random.chance(0.08),
-            preamble: if has_header && !glue.has_time() && random.chance(0.12) { 1 + random.below(3) } else { 0 },
+            preamble: if has_header && !glue.has_time() && random.chance(0.12) {
+                1 + random.below(3)
+            } else {
+                0
+            },
             line_end: if random.chance(0.15) { "\r\n" } else { "\n" },
             names: Vec::new(),
             below: Vec::new(),
@@ -389,10 +442,16 @@ impl Written {
 
     /// Names the columns of values.
     fn name(&mut self, random: &mut Random) {
-        let is_metric = self.parts.iter().flat_map(|part| &part.columns).all(|columns| {
-            columns.count.is_none()
-                && columns.unit.is_none_or(|unit| !matches!(unit.option, "deg/s" | "g") && unit.scale == 1.0)
-        });
+        let is_metric = self
+            .parts
+            .iter()
+            .flat_map(|part| &part.columns)
+            .all(|columns| {
+                columns.count.is_none()
+                    && columns.unit.is_none_or(|unit| {
+                        !matches!(unit.option, "deg/s" | "g") && unit.scale == 1.0
+                    })
+            });
         let namer = Namer::new(self.style, is_metric, random);
         let mut column = 0;
         let mut first: Vec<(Vec<String>, String)> = Vec::new();
@@ -416,7 +475,9 @@ impl Written {
                 }
                 column += names.len();
                 if self.separator.starts_with(' ') {
-                    names.iter_mut().for_each(|name| *name = name.replace(' ', "_"));
+                    names
+                        .iter_mut()
+                        .for_each(|name| *name = name.replace(' ', "_"));
                 }
                 if number > 0 && matches!(self.kind, Kind::Devices | Kind::Keyless | Kind::Tags) {
                     continue;
@@ -428,7 +489,12 @@ impl Written {
         }
         match self.kind {
             Kind::Tags => {
-                let plain = [["x", "y", "z"], ["X", "Y", "Z"], ["value0", "value1", "value2"], ["v1", "v2", "v3"]];
+                let plain = [
+                    ["x", "y", "z"],
+                    ["X", "Y", "Z"],
+                    ["value0", "value1", "value2"],
+                    ["v1", "v2", "v3"],
+                ];
                 self.names = random.of(&plain).map(String::from).to_vec();
                 self.below = vec![String::new(); 3];
             }
@@ -446,7 +512,9 @@ impl Written {
 
     /// The columns in front of the values.
     fn in_front(&self) -> usize {
-        self.before_stamps() + self.stamps.columns() + usize::from(self.has_key() && self.key_place == 1)
+        self.before_stamps()
+            + self.stamps.columns()
+            + usize::from(self.has_key() && self.key_place == 1)
     }
 
     /// The columns in front of the stamps.
@@ -458,7 +526,11 @@ impl Written {
 
     /// A row of all columns: stamps and key stand where they are wanted.
     fn row(&self, index: &str, stamps: Vec<String>, key: &str, values: Vec<String>) -> Vec<String> {
-        let mut row = if self.has_index { vec![index.to_owned()] } else { Vec::new() };
+        let mut row = if self.has_index {
+            vec![index.to_owned()]
+        } else {
+            Vec::new()
+        };
         if self.has_key() && self.key_place == 0 {
             row.push(key.into());
         }
@@ -483,9 +555,9 @@ impl Written {
             rows.retain(|(part, _)| *part == 0);
         }
         match self.order {
-            Order::ByTime => rows.sort_by_key(|&(part, sample)| {
-                (self.parts[part].moments_ns[sample], part)
-            }),
+            Order::ByTime => {
+                rows.sort_by_key(|&(part, sample)| (self.parts[part].moments_ns[sample], part))
+            }
             Order::Blocks(length) => rows.sort_by_key(|&(part, sample)| {
                 let factor = self.parts[0].rate_hz / self.parts[part].rate_hz;
                 ((sample as f64 * factor) as usize / length, part, sample)
@@ -497,7 +569,11 @@ impl Written {
 
     fn values(&self, part: usize, sample: usize) -> Vec<String> {
         let cells = |columns: &Columns| -> Vec<String> {
-            columns.cells.iter().map(|cells| cells[sample].clone()).collect()
+            columns
+                .cells
+                .iter()
+                .map(|cells| cells[sample].clone())
+                .collect()
         };
         let parts: Vec<usize> = match self.kind {
             Kind::Twins | Kind::Sparse => (0..self.parts.len()).collect(),
@@ -518,12 +594,18 @@ impl Written {
     }
 
     fn text(&self) -> String {
-        let mut lines: Vec<String> = ["Logger v2.31", "Range: 2000 dps, 16 g", "Session 7"][..self.preamble]
+        let mut lines: Vec<String> = ["Logger v2.31", "Range: 2000 dps, 16 g", "Session 7"]
+            [..self.preamble]
             .iter()
             .map(|line| format!("# {line}"))
             .collect();
         if self.has_header {
-            let names = self.row("", self.stamps.names.clone(), self.key_name, self.names.clone());
+            let names = self.row(
+                "",
+                self.stamps.names.clone(),
+                self.key_name,
+                self.names.clone(),
+            );
             lines.push(self.glue.header(&names, self.separator));
             if self.style == UnitStyle::Row {
                 let mut units = vec![self.stamps.below.clone()];
@@ -541,9 +623,11 @@ impl Written {
             let mut push = |key: &str, values: Vec<String>| {
                 let mut row = self.row(&index.to_string(), stamps.clone(), key, values);
                 if self.decimal_comma {
-                    row.iter_mut().filter(|cell| !cell.contains(':')).for_each(|cell| {
-                        *cell = cell.replace('.', ",");
-                    });
+                    row.iter_mut()
+                        .filter(|cell| !cell.contains(':'))
+                        .for_each(|cell| {
+                            *cell = cell.replace('.', ",");
+                        });
                 }
                 lines.push(self.glue.around(&row, self.separator, moment));
             };
@@ -656,7 +740,10 @@ impl Written {
         let text = self.text();
         let has_unit = !matches!(self.style, UnitStyle::None)
             && !(self.style == UnitStyle::Row && self.separator.starts_with(' '));
-        let has_counts = self.parts[0].columns.iter().any(|columns| columns.count.is_some());
+        let has_counts = self.parts[0]
+            .columns
+            .iter()
+            .any(|columns| columns.count.is_some());
         let is_full = has_unit
             && (self.stamps.is_told
                 || self.style == UnitStyle::Row && !self.stamps.below.is_empty())
@@ -670,7 +757,11 @@ impl Written {
         };
         let rate_hz = self.parts[0].rate_hz;
         let rows = self.parts[0].moments_ns.len() as f64;
-        let resolution = if self.glue.has_time() { 1e-3 } else { self.stamps.resolution() };
+        let resolution = if self.glue.has_time() {
+            1e-3
+        } else {
+            self.stamps.resolution()
+        };
         let rate_error = 1e-3_f64.max(2.0 * resolution * rate_hz / rows);
         let is_lossy = self.parts[0].kept.len() < self.parts[0].moments_ns.len();
         let before = self.before_stamps();
@@ -680,7 +771,14 @@ impl Written {
                 1 => before + self.stamps.columns() + 1,
                 _ => self.in_front() + self.names.len() + 1,
             };
-            (place, if self.has_header { self.key_name.to_owned() } else { String::new() })
+            (
+                place,
+                if self.has_header {
+                    self.key_name.to_owned()
+                } else {
+                    String::new()
+                },
+            )
         });
         let drawn = format!(
             "{:?} {:?} {:?} at {rate_hz:.3} Hz, {:?}, {:?}, {:?}, {:?}{}",
@@ -690,7 +788,11 @@ impl Written {
             self.stamps.manner,
             self.glue,
             self.order,
-            self.parts[0].columns.iter().map(|columns| columns.quantity).collect::<Vec<_>>(),
+            self.parts[0]
+                .columns
+                .iter()
+                .map(|columns| columns.quantity)
+                .collect::<Vec<_>>(),
             if has_counts { ", counts" } else { "" },
         );
         Layout {

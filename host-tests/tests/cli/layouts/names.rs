@@ -28,22 +28,47 @@ const fn product(
 }
 
 const PRODUCTS: [Product; 22] = [
-    product("gyroRotation$", "accelerometerAcceleration$", "magnetometer$", "temp"),
+    product(
+        "gyroRotation$",
+        "accelerometerAcceleration$",
+        "magnetometer$",
+        "temp",
+    ),
     product("w@", "a@", "B@", "temperature"),
     product("Gyr_$", "Acc_$", "Mag_$", "Temperature"),
     product("UncompGyro$", "UncompAcc$", "UncompMag$", "Temp"),
     product("$_GYRO_OUT", "$_ACCL_OUT", "$_MAGN_OUT", "TEMP_OUT"),
     product("g@", "a@", "m@", "t"),
-    product("gyro_rad[%]", "accelerometer_m_s2[%]", "magnetometer_ga[%]", "baro_temp_celcius"),
+    product(
+        "gyro_rad[%]",
+        "accelerometer_m_s2[%]",
+        "magnetometer_ga[%]",
+        "baro_temp_celcius",
+    ),
     product(
         "field.angular_velocity.@",
         "field.linear_acceleration.@",
         "field.magnetic_field.@",
         "field.temperature",
     ),
-    product("Shimmer_6749_Gyro_$_CAL", "Shimmer_6749_Accel_LN_$_CAL", "Shimmer_6749_Mag_$_CAL", "Shimmer_6749_Temperature_BMP280_CAL"),
-    product("Gyroscope @", "Acceleration @", "Magnetic field @", "Temperature"),
-    product("GYROSCOPE $", "ACCELEROMETER $", "MAGNETIC FIELD $", "TEMPERATURE"),
+    product(
+        "Shimmer_6749_Gyro_$_CAL",
+        "Shimmer_6749_Accel_LN_$_CAL",
+        "Shimmer_6749_Mag_$_CAL",
+        "Shimmer_6749_Temperature_BMP280_CAL",
+    ),
+    product(
+        "Gyroscope @",
+        "Acceleration @",
+        "Magnetic field @",
+        "Temperature",
+    ),
+    product(
+        "GYROSCOPE $",
+        "ACCELEROMETER $",
+        "MAGNETIC FIELD $",
+        "TEMPERATURE",
+    ),
     product("Gyro$", "Acc$", "Mag$", "Temp"),
     product("G_$", "A_$", "M_$", "T"),
     product("w_RS_S_@", "a_RS_S_@", "m_S_@", "temp"),
@@ -52,9 +77,24 @@ const PRODUCTS: [Product; 22] = [
     product("gyro-@", "accel-@", "magnetometer-@", "temperature"),
     product("@Rate", "@Accel", "@Mag", "boardTemp"),
     product("imu/gyro/@", "imu/accel/@", "imu/mag/@", "imu/temp"),
-    product("Static/Angular Velocity/$", "Static/Acceleration/$", "Static/Magnetic Field/$", "Static/Temperature/Scalar"),
-    product("GyroscopeData.@", "AccelerometerData.@", "MagnetometerData.@", "TemperatureData"),
-    product("Angular velocity $", "Acceleration $", "Magnetic field $", "Temperature"),
+    product(
+        "Static/Angular Velocity/$",
+        "Static/Acceleration/$",
+        "Static/Magnetic Field/$",
+        "Static/Temperature/Scalar",
+    ),
+    product(
+        "GyroscopeData.@",
+        "AccelerometerData.@",
+        "MagnetometerData.@",
+        "TemperatureData",
+    ),
+    product(
+        "Angular velocity $",
+        "Acceleration $",
+        "Magnetic field $",
+        "Temperature",
+    ),
 ];
 
 /// The products that always write rad/s and m/s².

@@ -42,7 +42,12 @@ impl Quantity {
         match self {
             Self::Attitude => 4,
             Self::Covariance => 9,
-            Self::Temperature | Self::Pressure | Self::Status | Self::Counter | Self::Label | Self::Constant => 1,
+            Self::Temperature
+            | Self::Pressure
+            | Self::Status
+            | Self::Counter
+            | Self::Label
+            | Self::Constant => 1,
             _ => 3,
         }
     }
@@ -193,7 +198,11 @@ impl Columns {
 }
 
 /// The unit in which a log writes a quantity. Radians and m/s² mostly go together.
-pub(super) fn choose_unit(quantity: Quantity, is_metric: bool, random: &mut Random) -> Option<Written> {
+pub(super) fn choose_unit(
+    quantity: Quantity,
+    is_metric: bool,
+    random: &mut Random,
+) -> Option<Written> {
     let is_usual = random.chance(0.85);
     Some(match quantity {
         Quantity::Rate if random.chance(0.06) => RATES[2 + random.below(2)],
@@ -275,7 +284,11 @@ fn values(quantity: Quantity, style: Style, random: &mut Random) -> Vec<Vec<f64>
     }
     if quantity == Quantity::Attitude {
         for sample in 0..style.samples {
-            let norm = axes.iter().map(|axis| axis[sample].powi(2)).sum::<f64>().sqrt();
+            let norm = axes
+                .iter()
+                .map(|axis| axis[sample].powi(2))
+                .sum::<f64>()
+                .sqrt();
             axes.iter_mut().for_each(|axis| axis[sample] /= norm);
         }
     }

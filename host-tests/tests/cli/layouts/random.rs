@@ -8,7 +8,9 @@ impl Random {
     pub(super) fn new(seed: u64) -> Self {
         let mixed = (seed + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
         let mut random = Self((mixed ^ (mixed >> 31)) | 1);
-        (0..8).for_each(|_| drop(random.next()));
+        for _ in 0..8 {
+            random.next();
+        }
         random
     }
 

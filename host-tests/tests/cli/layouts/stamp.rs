@@ -52,7 +52,10 @@ impl Stamps {
     pub(super) fn new(rate_hz: f64, has_header: bool, random: &mut Random) -> Self {
         let mut manner = manner(rate_hz, random);
         // Without a name, nobody knows that a counter does not count a part of a second that is a power of ten.
-        if let Manner::Whole { per_second: 32_768 | 10_000, .. } = manner
+        if let Manner::Whole {
+            per_second: 32_768 | 10_000,
+            ..
+        } = manner
             && !has_header
         {
             manner = Manner::None;
@@ -187,7 +190,10 @@ impl Stamps {
                 ..
             } => vec![decimal(u128::from(ns) * u128::from(per_second), decimals)],
             Manner::Date(between, decimals, behind) => {
-                vec![format!("2026-03-02{between}{}{behind}", clock(decimals, ":"))]
+                vec![format!(
+                    "2026-03-02{between}{}{behind}",
+                    clock(decimals, ":")
+                )]
             }
             Manner::TwoColumns(decimals) => vec!["2026-03-02".into(), clock(decimals, ":")],
             Manner::Clock(decimals) => vec![clock(decimals, ":")],
@@ -282,7 +288,13 @@ fn names(manner: Manner, random: &mut Random) -> (Vec<String>, bool) {
                 1 => ["time_s", "Time (s)", "t [s]", "elapsed (s)", "seconds"],
                 1000 => ["time_ms", "Time (ms)", "t [ms]", "millis", "timestamp_ms"],
                 1_000_000 => ["time_us", "Time (us)", "t [us]", "micros", "timestamp_us"],
-                _ => ["time_ns", "Time (ns)", "#timestamp [ns]", "nanos", "timestamp_ns"],
+                _ => [
+                    "time_ns",
+                    "Time (ns)",
+                    "#timestamp [ns]",
+                    "nanos",
+                    "timestamp_ns",
+                ],
             };
             if random.chance(0.65) {
                 one(random.of(&told), true)
@@ -295,14 +307,22 @@ fn names(manner: Manner, random: &mut Random) -> (Vec<String>, bool) {
         Manner::Clock(_) => one(random.of(&["time", "time of day", "UTC", "clock"]), true),
         Manner::Hhmmss(_) => one(random.of(&["utc", "time", "utc_time", "hhmmss"]), false),
         Manner::Week(_) => {
-            let names = random.of(&[["week", "tow"], ["GPS week", "GPS seconds"], ["gps_week", "tow_s"]]);
+            let names = random.of(&[
+                ["week", "tow"],
+                ["GPS week", "GPS seconds"],
+                ["gps_week", "tow_s"],
+            ]);
             (names.map(String::from).to_vec(), true)
         }
         Manner::Pair(per_second) => {
             let names = if per_second == 1_000_000 {
                 random.of(&[["sec", "usec"], ["tv_sec", "tv_usec"]])
             } else {
-                random.of(&[["sec", "nanosec"], ["secs", "nsecs"], ["stamp.sec", "stamp.nanosec"]])
+                random.of(&[
+                    ["sec", "nanosec"],
+                    ["secs", "nsecs"],
+                    ["stamp.sec", "stamp.nanosec"],
+                ])
             };
             (names.map(String::from).to_vec(), true)
         }

@@ -556,7 +556,7 @@ impl Written {
         }
         match self.order {
             Order::ByTime => {
-                rows.sort_by_key(|&(part, sample)| (self.parts[part].moments_ns[sample], part))
+                rows.sort_by_key(|&(part, sample)| (self.parts[part].moments_ns[sample], part));
             }
             Order::Blocks(length) => rows.sort_by_key(|&(part, sample)| {
                 let factor = self.parts[0].rate_hz / self.parts[part].rate_hz;
@@ -738,8 +738,8 @@ impl Written {
     fn layout(self) -> Layout {
         let sources = self.sources();
         let text = self.text();
-        let has_unit = !matches!(self.style, UnitStyle::None)
-            && !(self.style == UnitStyle::Row && self.separator.starts_with(' '));
+        let is_row_of_blanks = self.style == UnitStyle::Row && self.separator.starts_with(' ');
+        let has_unit = self.style != UnitStyle::None && !is_row_of_blanks;
         let has_counts = self.parts[0]
             .columns
             .iter()

@@ -62,6 +62,19 @@ pub struct GaussMarkovProcess {
 }
 
 impl GaussMarkovProcess {
+    /// A process with this correlation time that over shorter times is a random walk, given in rate units/√s.
+    pub fn of_walk(walk: f64, correlation_time_s: f64) -> Self {
+        Self {
+            sigma: walk * (0.5 * correlation_time_s).sqrt(),
+            correlation_time_s,
+        }
+    }
+
+    /// The density of the white noise that drives the process, `σ √(2/T)`, in rate units/√s.
+    pub fn driving(self) -> f64 {
+        self.sigma * (2.0 / self.correlation_time_s).sqrt()
+    }
+
     /// Allan variance at an averaging factor, in rate units squared.
     pub fn variance(&self, m: u32, interval_s: f64) -> f64 {
         let shape = gauss_markov_shape(self.correlation_time_s, interval_s);

@@ -12,20 +12,27 @@ fn close(value: f64, expected: f64) -> bool {
     (value / expected - 1.0).abs() <= TOLERANCE
 }
 
+/// Options that leave a simulated gyro no change of its bias.
+const WHITE: [&str; 4] = ["--bias-instability", "0", "--rate-random-walk", "0"];
+
+/// Writes the log of a simulated gyro of this many axes, and of this seed.
+fn simulated(folder: &Path, duration: &str, axes: u8, options: &[&str], name: &str) {
+    let axes = axes.to_string();
+    let simulate = ["simulate", "mems", "--duration", duration, "--axes", &axes];
+    let written = ["--output", name];
+    output(folder, &[&simulate[..], options, &written].concat());
+}
+
 /// A folder with the curves of a real gyro and of a simulated one. An axis of the real gyro has a
-/// name with characters that are special in every format. The simulated one in `short.json` has a
-/// random walk that is not observable.
+/// name with characters that are special in every format. The simulated one in `short.json` has no
+/// bias that changes, and a random walk that is not observable.
 fn folder() -> (TempDir, String) {
     let hostile = "g\"x*/ // #: ,\\\n'{%} é".to_owned();
     let folder = TempDir::new().unwrap();
     let mut curve: Value = serde_json::from_str(&fs::read_to_string(ADIS16405).unwrap()).unwrap();
     curve["axes"][0]["axis"] = hostile.clone().into();
     fs::write(folder.path().join("curve.json"), curve.to_string()).unwrap();
-    let simulate = ["simulate", "mems", "--duration", "200s", "--axes", "1"];
-    output(
-        folder.path(),
-        &[&simulate[..], &["--output", "log.csv"]].concat(),
-    );
+    simulated(folder.path(), "200s", 1, &WHITE, "log.csv");
     let measure = ["measure", "log.csv", "--output", "short.json"];
     output(folder.path(), &measure);
     (folder, hostile)
@@ -59,6 +66,21 @@ fn expected(folder: &Path, input: &str, symbol: &str) -> Vec<Option<f64>> {
         .iter()
         .map(of_axis)
         .collect()
+}
+
+/// The random walk of each axis for a filter without another state for the bias: K, and twice the walk that is as large as
+/// white noise where flicker noise is.
+fn walks(folder: &Path, input: &str) -> Vec<Option<f64>> {
+    let of = |symbol: &str| expected(folder, input, symbol);
+    let axes = of("N").into_iter().zip(of("B")).zip(of("K"));
+    let walk = |((n, b), k): ((Option<f64>, Option<f64>), Option<f64>)| {
+        let flicker = n.zip(b).map(|(n, b)| 2.0 * b * b / n);
+        match (k, flicker) {
+            (Some(k), Some(flicker)) => Some(k.hypot(flicker)),
+            (k, flicker) => k.or(flicker),
+        }
+    };
+    axes.map(walk).collect()
 }
 
 fn largest(values: &[Option<f64>]) -> f64 {
@@ -101,12 +123,12 @@ fn kalibr_reads_the_densities_of_the_fit_and_of_the_overbound() {
     );
     let file = yaml(&text);
     let number = |key: &str| file[key].as_floating_point().unwrap();
-    for (key, symbol) in [
-        ("gyroscope_noise_density", "N"),
-        ("gyroscope_random_walk", "K"),
+    let densities = expected(folder.path(), "curve.json", "N");
+    for (key, wanted) in [
+        ("gyroscope_noise_density", densities),
+        ("gyroscope_random_walk", walks(folder.path(), "curve.json")),
     ] {
-        let wanted = largest(&expected(folder.path(), "curve.json", symbol));
-        assert!(close(number(key), wanted), "{key}");
+        assert!(close(number(key), largest(&wanted)), "{key}");
         let line = text.lines().find(|line| line.starts_with(key)).unwrap();
         assert!(
             is_yaml_1_1_float(line.split_whitespace().nth(1).unwrap()),
@@ -144,14 +166,12 @@ fn openvins_finds_the_same_under_imu0_and_the_accelerometer_as_given() {
     let number = |key: &str| imu[key].as_floating_point().unwrap();
     assert_eq!(number("accelerometer_noise_density"), 2e-3);
     assert_eq!(number("accelerometer_random_walk"), 3e-5);
-    for (key, symbol) in [
-        ("gyroscope_noise_density", "N"),
-        ("gyroscope_random_walk", "K"),
+    let densities = expected(folder.path(), "curve.json", "N");
+    for (key, wanted) in [
+        ("gyroscope_noise_density", densities),
+        ("gyroscope_random_walk", walks(folder.path(), "curve.json")),
     ] {
-        assert!(close(
-            number(key),
-            largest(&expected(folder.path(), "curve.json", symbol))
-        ));
+        assert!(close(number(key), largest(&wanted)), "{key}");
     }
     assert_eq!(imu["rostopic"].as_str(), Some("/imu0"));
     assert_eq!(imu["T_i_b"][3][3].as_floating_point(), Some(1.0));
@@ -169,7 +189,7 @@ fn parameters(text: &str, value: impl Fn(&str) -> (String, f64)) -> HashMap<Stri
 fn autopilots_read_discrete_noise_per_prediction() {
     let (folder, _) = folder();
     let density = largest(&expected(folder.path(), "curve.json", "N"));
-    let walk = largest(&expected(folder.path(), "curve.json", "K"));
+    let walk = largest(&walks(folder.path(), "curve.json"));
 
     let text = export(folder.path(), "curve.json", &["px4"]);
     let px4 = parameters(&text, |line| {
@@ -221,6 +241,7 @@ fn matlab_gets_three_values_if_all_axes_are_known_and_one_otherwise() {
             assert!(close(value, wanted.unwrap()), "{key}");
         }
     }
+    // The bias instability stands beside it.
     let wanted = largest(&expected(folder.path(), "curve.json", "K"));
     assert!(close(gyro["RandomWalk"].as_f64().unwrap(), wanted));
     let above = &file[format!("{name}_overbound")]["Gyroscope"];
@@ -336,19 +357,23 @@ fn log_in_radians_is_exported_without_conversion() {
 }
 
 #[test]
-fn coefficient_that_is_not_observable_is_left_out_with_the_reason() {
+fn coefficient_that_is_not_observable_is_bounded_or_left_out_with_the_reason() {
     let (folder, _) = folder();
     assert_eq!(expected(folder.path(), "short.json", "K"), [None]);
     let reason = "not observable in this record; a record of ";
+    // A filter gets the least random walk above the curve, which the bias may have.
     let text = export(folder.path(), "short.json", &["kalibr"]);
-    let file = yaml(&text);
-    assert!(file.as_mapping_get("gyroscope_random_walk").is_none());
-    assert!(text.contains(&format!(
-        "# gyroscope_random_walk:  # rad/s^2/sqrt(Hz); {reason}"
-    )));
-    let text = export(folder.path(), "short.json", &["px4"]);
-    assert!(text.contains(&format!("# EKF2_GYR_B_NOISE: {reason}")));
-    assert!(!text.contains("\n1\t1\tEKF2_GYR_B_NOISE"));
+    let walk = yaml(&text)["gyroscope_random_walk"].as_floating_point();
+    let above = export(folder.path(), "short.json", &["kalibr", "--overbound"]);
+    assert_eq!(
+        walk,
+        yaml(&above)["gyroscope_random_walk"].as_floating_point()
+    );
+    assert!(walk.unwrap() > 0.0);
+    let said =
+        format!("the least random walk above the limits of the curve, because K is {reason}");
+    assert!(text.contains(&said), "{text}");
+    // K itself, and the walk of a simulator, have no number.
     let text = export(folder.path(), "short.json", &["c"]);
     assert!(text.contains(&format!(
         "// GYRO_AXIS_GX_RANDOM_WALK is not defined: {reason}"
@@ -364,6 +389,153 @@ fn coefficient_that_is_not_observable_is_left_out_with_the_reason() {
             .starts_with("RandomWalk left out: not obs")
     };
     assert!(notes.iter().any(said));
+}
+
+/// Writes a log of a gyro and an accelerometer, in which the third axis of the gyro has white noise alone.
+fn imu(folder: &Path) {
+    simulated(folder, "600s", 3, &[], "three.csv");
+    simulated(folder, "600s", 3, &["--seed", "11"], "others.csv");
+    simulated(folder, "600s", 1, &WHITE, "white.csv");
+    let rows = |name: &str| -> Vec<String> {
+        let text = fs::read_to_string(folder.join(name)).unwrap();
+        let rows = text.lines().filter(|line| !line.starts_with('#')).skip(1);
+        rows.map(str::to_owned).collect()
+    };
+    let mut log = "gx (deg/s),gy (deg/s),gz (deg/s),ax (m/s^2),ay (m/s^2),az (m/s^2)\n".to_owned();
+    let gyro = rows("three.csv").into_iter().zip(rows("white.csv"));
+    for ((three, white), others) in gyro.zip(rows("others.csv")) {
+        let (two, _) = three.rsplit_once(',').unwrap();
+        log += &format!("{two},{white},{others}\n");
+    }
+    fs::write(folder.join("imu.csv"), log).unwrap();
+}
+
+#[test]
+fn one_log_gives_the_numbers_of_both_sensors() {
+    let folder = TempDir::new().unwrap();
+    imu(folder.path());
+    let both = |format: &str| {
+        export(
+            folder.path(),
+            "imu.csv",
+            &[format, "--rate", "100", "--accelerometer"],
+        )
+    };
+    let fit = [
+        "fit",
+        "imu.csv",
+        "--rate",
+        "100",
+        "--sensor",
+        "accelerometer",
+    ];
+    let fit = json(folder.path(), &fit);
+    let of_axis = |axis: &Value| axis["coefficients"][1]["value"].as_f64().unwrap();
+    let density = fit["axes"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(of_axis)
+        .fold(0.0, f64::max);
+    let text = both("kalibr");
+    let file = yaml(&text);
+    let number = |key: &str| file[key].as_floating_point().unwrap();
+    assert!(close(number("accelerometer_noise_density"), density));
+    assert!(number("accelerometer_random_walk") > 0.0);
+    assert!(
+        text.contains("# Accelerometer, in m/s^2 and seconds:"),
+        "{text}"
+    );
+    let text = both("fast-lio");
+    let file = yaml(&text);
+    let covariance = file["mapping"]["acc_cov"].as_floating_point().unwrap();
+    assert!(close(covariance, density * density * 100.0));
+    // A number that an option gives is that of the option.
+    let given = [
+        "orb-slam3",
+        "--rate",
+        "100",
+        "--accelerometer",
+        "--accelerometer-noise-density",
+        "0.25",
+    ];
+    let text = export(folder.path(), "imu.csv", &given);
+    let rest = text.strip_prefix("%YAML:1.0\n").unwrap();
+    assert_eq!(yaml(rest)["IMU.NoiseAcc"].as_floating_point(), Some(0.25));
+    let scaled = [
+        "export",
+        "imu.csv",
+        "--quiet",
+        "--format",
+        "kalibr",
+        "--accelerometer",
+        "--rate",
+        "100",
+        "--scale",
+        "2",
+    ];
+    assert_eq!(
+        refusal(folder.path(), &scaled),
+        "--scale describes one sensor, and the log is read for two; name columns and units in the log's header instead"
+    );
+}
+
+#[test]
+fn an_axis_without_a_random_walk_leaves_no_default_in_the_other_program() {
+    let folder = TempDir::new().unwrap();
+    imu(folder.path());
+    let written = |format: &str| export(folder.path(), "imu.csv", &[format, "--rate", "100"]);
+    let model: Value = serde_json::from_str(&written("json")).unwrap();
+    let axis = |place: usize| &model["axes"][place];
+    assert_eq!(axis(2)["random_walk"], Value::Null);
+    let walk = |place: usize| axis(place)["random_walk_alone"].as_f64().unwrap();
+    assert_eq!(Some(walk(2)), axis(2)["overbound"]["random_walk"].as_f64());
+    let text = written("gtsam");
+    let start = "    params.setBiasOmegaCovariance(np.diag([";
+    let call = text
+        .lines()
+        .find_map(|line| line.strip_prefix(start))
+        .unwrap();
+    let (row, _) = call.split_once("])").unwrap();
+    let text = written("kf-gins");
+    let file = yaml(&text);
+    for (place, square) in row.split(", ").enumerate() {
+        assert!(close(square.parse().unwrap(), walk(place).powi(2)));
+        let sigma = file["imunoise"]["gbstd"][place]
+            .as_floating_point()
+            .unwrap();
+        let degrees = 3600.0 * 180.0 / std::f64::consts::PI;
+        assert!(
+            close(sigma, walk(place) * 300_f64.sqrt() * degrees),
+            "{text}"
+        );
+    }
+}
+
+#[test]
+fn a_key_that_is_left_out_says_what_the_other_program_then_does() {
+    let folder = TempDir::new().unwrap();
+    simulated(folder.path(), "60s", 1, &WHITE, "white.csv");
+    let written = |format: &str| export(folder.path(), "white.csv", &[format]);
+    let text = written("gtsam");
+    assert!(text.contains("def set_gyro_noise(params):"), "{text}");
+    // Python asks for what gtsam would take for 1.
+    assert!(text.contains("def set_accelerometer_noise(params, noise_density, random_walk):"));
+    for (format, said) in [
+        ("kalibr", "Kalibr then stops"),
+        ("openvins", "OpenVINS then stops"),
+        ("vins-fusion", "VINS-Fusion then takes 0"),
+        ("orb-slam3", "ORB-SLAM3 then stops"),
+        ("lio-sam", "LIO-SAM then takes 2e-4"),
+        ("fast-lio", "FAST-LIO then takes 1e-4"),
+        ("kf-gins", "KF-GINS then stops"),
+        ("px4", "its default is 0.003"),
+        ("ardupilot", "its default is 0.02"),
+        ("sdf", "Gazebo then takes 0"),
+    ] {
+        let text = written(format);
+        assert!(text.contains(said), "{format}: {text}");
+    }
 }
 
 #[test]

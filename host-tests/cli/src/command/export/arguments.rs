@@ -9,8 +9,8 @@ use allanite_log::failure::Failure;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
-/// Write the model of a gyro's noise for a filter: Kalibr, OpenVINS, VINS-Fusion, LIO-SAM, GTSAM, KF-GINS, ROS, PX4,
-/// ArduPilot, MATLAB, C or JSON
+/// Write the model of a gyro's noise for a filter: Kalibr, OpenVINS, VINS-Fusion, ORB-SLAM3, LIO-SAM, FAST-LIO, GTSAM,
+/// KF-GINS, ROS, PX4, ArduPilot, MATLAB, Gazebo, C or JSON
 #[derive(Debug, Args)]
 #[command(after_help = examples::EXPORT)]
 pub(in crate::command) struct Arguments {
@@ -31,9 +31,12 @@ pub(in crate::command) struct Arguments {
     /// Name of the gyro, which is the name of the part for MATLAB and the prefix of names in C
     #[arg(long, default_value = "gyro")]
     pub(super) name: String,
-    /// The topic of the IMU, for Kalibr, OpenVINS, VINS-Fusion and LIO-SAM
+    /// The topic of the IMU, for Kalibr, OpenVINS, VINS-Fusion, LIO-SAM and FAST-LIO
     #[arg(long, default_value = "/imu0", value_name = "TOPIC")]
     pub(super) rostopic: String,
+    /// Take white noise and random walk of the accelerometer from the same log, for formats that have them
+    #[arg(long)]
+    pub(super) accelerometer: bool,
     /// White noise of the accelerometer, in m/s²/√Hz, for formats that have it
     #[arg(long, value_name = "DENSITY", allow_negative_numbers = true)]
     pub(super) accelerometer_noise_density: Option<f64>,
@@ -125,8 +128,12 @@ pub(super) enum Format {
     /// The lines of VINS-Fusion's configuration
     #[value(alias = "vins-mono")]
     VinsFusion,
+    /// The lines of ORB-SLAM3's settings
+    OrbSlam3,
     /// The lines of LIO-SAM's params.yaml
     LioSam,
+    /// The lines of FAST-LIO's configuration
+    FastLio,
     /// A function in Python that sets GTSAM's preintegration parameters
     Gtsam,
     /// The noise part of KF-GINS' configuration
@@ -139,6 +146,9 @@ pub(super) enum Format {
     Ardupilot,
     /// JSON for loadparams of MATLAB's imuSensor
     Matlab,
+    /// A model of SDFormat with an IMU, for Gazebo
+    #[value(alias = "gazebo")]
+    Sdf,
     /// A C header
     C,
     /// Everything the model has, with intervals, for a filter of your own

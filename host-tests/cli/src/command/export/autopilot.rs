@@ -19,10 +19,17 @@ use super::{
 };
 use std::fmt::Write;
 
+/// A parameter of an autopilot.
+struct Parameter {
+    name: &'static str,
+    /// What it is before it is set.
+    default: f64,
+}
+
 /// The parameters of an autopilot and the syntax of its files.
 struct Autopilot {
-    noise: &'static str,
-    bias_noise: &'static str,
+    /// White noise and random walk of the gyro, then of the accelerometer.
+    parameters: [Parameter; 4],
     interval_s: f64,
     interval: &'static str,
     /// Writes a line of the file from a name and a value.
@@ -30,10 +37,18 @@ struct Autopilot {
     notes: [&'static str; 2],
 }
 
+const fn parameter(name: &'static str, default: f64) -> Parameter {
+    Parameter { name, default }
+}
+
 /// A line for QGroundControl has vehicle, component, name, value and type, separated by tabs.
 const PX4: Autopilot = Autopilot {
-    noise: "EKF2_GYR_NOISE",
-    bias_noise: "EKF2_GYR_B_NOISE",
+    parameters: [
+        parameter("EKF2_GYR_NOISE", 0.015),
+        parameter("EKF2_GYR_B_NOISE", 1e-3),
+        parameter("EKF2_ACC_NOISE", 0.35),
+        parameter("EKF2_ACC_B_NOISE", 3e-3),
+    ],
     interval_s: 0.01,
     interval: "EKF2_PREDICT_US, 10000 us unless changed",
     // Type 9 of MAVLink is a float of 32 bits.
@@ -46,8 +61,12 @@ const PX4: Autopilot = Autopilot {
 
 /// A line for Mission Planner and MAVProxy has name and value, separated by a comma.
 const ARDUPILOT: Autopilot = Autopilot {
-    noise: "EK3_GYRO_P_NSE",
-    bias_noise: "EK3_GBIAS_P_NSE",
+    parameters: [
+        parameter("EK3_GYRO_P_NSE", 0.015),
+        parameter("EK3_GBIAS_P_NSE", 1e-3),
+        parameter("EK3_ACC_P_NSE", 0.35),
+        parameter("EK3_ABIAS_P_NSE", 0.02),
+    ],
     interval_s: 0.012,
     interval: "EKF_TARGET_DT, 0.012 s, or the period of a slower main loop",
     line: |name, value| format!("{name},{}", decimal(value)),
@@ -71,23 +90,29 @@ fn parameters(known: &Characterisation, arguments: &Arguments, of: &Autopilot) -
     let interval_s = arguments.prediction_interval.unwrap_or(of.interval_s);
     let per_step = 1.0 / interval_s.sqrt();
     let mut text = String::new();
+    let set = |text: &mut String, mark: &str, parameter: &Parameter, given: Given| {
+        let Parameter { name, default } = parameter;
+        let without = format!("its default is {default}");
+        let given = given.times(per_step).without(&without);
+        // Remarks have lines of their own, because not every reader accepts a comment after a value.
+        if !given.words().is_empty() {
+            let _ = writeln!(text, "# {name}: {}", given.words());
+        }
+        if let Some(value) = given.value() {
+            let _ = writeln!(text, "{mark}{}", (of.line)(name, value));
+        }
+    };
+    let [noise, walk, of_accelerometer @ ..] = &of.parameters;
     let (live, beside) = known.chosen(arguments.overbound);
     for (choice, mark) in [(live, ""), (beside, "# ")] {
         let _ = writeln!(text, "# {}:", choice.name);
-        let both = [
-            (of.noise, choice.pair.noise_density),
-            (of.bias_noise, choice.pair.random_walk),
-        ];
-        for (name, given) in both {
-            let given: Given = given.times(per_step);
-            // Remarks have lines of their own, because not every reader accepts a comment after a value.
-            if !given.words().is_empty() {
-                let _ = writeln!(text, "# {name}: {}", given.words());
-            }
-            if let Some(value) = given.value() {
-                let _ = writeln!(text, "{mark}{}", (of.line)(name, value));
-            }
-        }
+        set(&mut text, mark, noise, choice.pair.noise_density);
+        set(&mut text, mark, walk, choice.pair.random_walk);
+    }
+    let pair = &known.accelerometer.pair;
+    let both = [&pair.noise_density, &pair.random_walk].map(Given::clone);
+    for (parameter, given) in of_accelerometer.iter().zip(both) {
+        set(&mut text, "", parameter, given);
     }
     let _ = writeln!(
         text,
@@ -95,8 +120,8 @@ fn parameters(known: &Characterisation, arguments: &Arguments, of: &Autopilot) -
          # {} = N/sqrt(dt) in rad/s, {} = K/sqrt(dt) in rad/s^2.",
         decimal(interval_s),
         of.interval,
-        of.noise,
-        of.bias_noise
+        noise.name,
+        walk.name
     );
     for note in of.notes {
         let _ = writeln!(text, "# {note}");

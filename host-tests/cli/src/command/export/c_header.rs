@@ -37,7 +37,8 @@ pub(super) fn header(known: &Characterisation, name: &str) -> String {
         taken.push(own);
         let of_noise = axis.coefficients.iter();
         for coefficient in of_noise.filter(|one| IEEE_952.contains(&one.symbol)) {
-            let (symbol, unit) = (coefficient.symbol, summary::unit(coefficient.half_seconds));
+            let symbol = coefficient.symbol;
+            let unit = summary::unit(axis.sensor, coefficient.half_seconds);
             let name = match symbol {
                 "N" => "NOISE_DENSITY".into(),
                 "K" => "RANDOM_WALK".into(),
@@ -51,6 +52,8 @@ pub(super) fn header(known: &Characterisation, name: &str) -> String {
         }
         let (density, walk) = (axis.white(), axis.best("K"));
         discrete(&mut text, &prefix, known.rate_hz, density, walk);
+        let alone = format!("{prefix}_RANDOM_WALK_ALONE");
+        number(&mut text, &alone, &axis.walk(), "rad/s^2/sqrt(Hz)");
         of_model(&mut text, &prefix, &axis.states);
         if let Some(equivalent) = axis.equivalent {
             process(

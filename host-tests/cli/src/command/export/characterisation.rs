@@ -1,12 +1,19 @@
 //! The characterisation of a gyro, from which every format is written.
 
-use super::{arguments::Arguments, axis_noise::AxisNoise, explained::explained, given::Given};
-use allanite_log::failure::{Failure, Place};
+use super::{
+    accelerometer::Accelerometer, arguments::Arguments, axis_noise::AxisNoise,
+    explained::explained, given::Given,
+};
+use allanite_log::{
+    failure::{Failure, Place},
+    unit::Sensor,
+};
 
 /// The characterisation of a gyro, in radians and seconds.
 pub(super) struct Characterisation {
     pub(super) axes: Vec<AxisNoise>,
     pub(super) rate_hz: f64,
+    pub(super) accelerometer: Accelerometer,
 }
 
 impl Characterisation {
@@ -55,9 +62,9 @@ impl Characterisation {
 
 /// The two continuous-time densities that most filters use.
 pub(super) struct Pair {
-    /// White noise, in rad/s/√Hz.
+    /// White noise, in rad/s/√Hz, or m/s²/√Hz of an accelerometer.
     pub(super) noise_density: Given,
-    /// Random walk, in rad/s²/√Hz.
+    /// Random walk, in rad/s²/√Hz, or m/s³/√Hz of an accelerometer.
     pub(super) random_walk: Given,
 }
 
@@ -74,7 +81,7 @@ pub(super) struct Choice {
 pub(super) fn characterise(arguments: &Arguments) -> Result<Characterisation, Failure> {
     let path = &arguments.input;
     let mut axes = Vec::new();
-    for explained in explained(arguments)? {
+    for explained in explained(arguments, Sensor::Gyro)? {
         let noise = AxisNoise::of(&explained).ok_or_else(|| {
             let what = format!(
                 "axis {}: its curve has no finite confidence limits",
@@ -95,5 +102,9 @@ pub(super) fn characterise(arguments: &Arguments) -> Result<Characterisation, Fa
         );
         return Err(Place::file(path).failure(what, "export only axes with the same rate"));
     }
-    Ok(Characterisation { axes, rate_hz })
+    Ok(Characterisation {
+        axes,
+        rate_hz,
+        accelerometer: Accelerometer::of(arguments)?,
+    })
 }

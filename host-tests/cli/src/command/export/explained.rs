@@ -58,24 +58,33 @@ pub(super) struct Explained {
     pub(super) course: Option<Course>,
 }
 
-/// Reads the input and explains every axis.
+/// Reads the input and explains every axis of a sensor.
 ///
 /// # Errors
-/// When the input cannot be read or fitted, is of an accelerometer, or when an axis is not valid or not explained and no
+/// When the input cannot be read or fitted, is of the other sensor, or when an axis is not valid or not explained and no
 /// option allows that.
-pub(super) fn explained(arguments: &Arguments) -> Result<Vec<Explained>, Failure> {
+pub(super) fn explained(arguments: &Arguments, sensor: Sensor) -> Result<Vec<Explained>, Failure> {
     let path = &arguments.input;
     let model = arguments.effects.model()?;
     let choice = arguments.choice();
-    let (about_log, covariates) = (&arguments.about_log, &arguments.covariates);
-    let axes = record::read_with_evidence(path, about_log, covariates)?;
+    let about_log = match sensor {
+        Sensor::Gyro => arguments.about_log.clone(),
+        Sensor::Accelerometer => arguments.about_log.of_sensor(sensor)?,
+    };
+    let axes = record::read_with_evidence(path, &about_log, &arguments.covariates)?;
     let explain = |(axis, evidence): (AxisCurve, Evidence)| {
-        if axis.unit.sensor() != Sensor::Gyro {
-            let what = format!(
-                "axis {} is from an accelerometer, in {}",
-                axis.axis, axis.unit
-            );
-            let remedy = "export a gyro; `fit` prints the coefficients of an accelerometer";
+        if axis.unit.sensor() != sensor {
+            let (found, remedy) = match sensor {
+                Sensor::Gyro => (
+                    "an accelerometer",
+                    "export a gyro; `fit` prints the coefficients of an accelerometer",
+                ),
+                Sensor::Accelerometer => (
+                    "a gyro",
+                    "drop --accelerometer, and give its densities with options",
+                ),
+            };
+            let what = format!("axis {} is from {found}, in {}", axis.axis, axis.unit);
             return Err(Place::file(path).failure(what, remedy));
         }
         let name = axis.axis.clone();

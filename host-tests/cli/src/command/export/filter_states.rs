@@ -36,7 +36,7 @@ pub(super) struct FilterStates {
 /// A process whose correlation time is no longer than this number of samples is white noise to a filter: that of the
 /// density which it has at low frequencies. White noise behind a low pass of one pole is such a process. Chosen by hand:
 /// no filter is told the angle more than once in ten samples.
-const FAST_SAMPLES: f64 = 10.0;
+pub(super) const FAST_SAMPLES: f64 = 10.0;
 
 /// A value with its 95 % interval.
 #[derive(Clone, Copy, Default)]
@@ -284,7 +284,7 @@ impl Process {
 
     /// The density of the white noise that drives the process, `σ √(2/T)` in rad/s²/√Hz.
     pub(super) fn driving(&self) -> f64 {
-        self.sigma.value * (2.0 / self.time_s.value).sqrt()
+        self.process.driving()
     }
 }
 

@@ -36,13 +36,44 @@ impl Given {
 
     /// The number times a factor.
     pub(super) fn times(self, factor: f64) -> Self {
+        self.map(|value| factor * value)
+    }
+
+    /// The number as a function makes it.
+    pub(super) fn map(self, of: impl Fn(f64) -> f64) -> Self {
         match self {
             Self::Number { value, remark } => Self::Number {
-                value: factor * value,
+                value: of(value),
                 remark,
             },
             missing => missing,
         }
+    }
+
+    /// The same, and where there is no number, what the other program does without it.
+    pub(super) fn without(self, program_does: &str) -> Self {
+        match self {
+            Self::Missing { why } if !program_does.is_empty() => Self::Missing {
+                why: format!("{why}; {program_does}"),
+            },
+            same => same,
+        }
+    }
+
+    /// The numbers of three axes, in which an axis without one has the largest of the others, with a remark that says so if
+    /// there is such an axis. `None` if no axis has a number, or there are not three axes.
+    pub(super) fn three(axes: &[Self]) -> Option<([f64; 3], &'static str)> {
+        let [x, y, z] = axes else {
+            return None;
+        };
+        let values = [x, y, z].map(Self::value);
+        let largest = values.into_iter().flatten().reduce(f64::max)?;
+        let is_complete = values.iter().all(Option::is_some);
+        let remark = match is_complete {
+            true => "",
+            false => "an axis without a number has the largest of the others",
+        };
+        Some((values.map(|value| value.unwrap_or(largest)), remark))
     }
 
     /// The largest number of the axes, with the remarks and reasons of all axes.
@@ -93,6 +124,21 @@ mod tests {
             common.words(),
             "largest of axes \"x\", \"y\"; \"z\": not observable"
         );
+    }
+
+    #[test]
+    fn an_axis_without_a_number_gets_the_largest_of_the_others() {
+        let (x, y) = (Given::plain(1.0), Given::plain(3.0));
+        let complete = [x.clone(), y.clone(), Given::plain(2.0)];
+        assert_eq!(Given::three(&complete), Some(([1.0, 3.0, 2.0], "")));
+        let (numbers, remark) = Given::three(&[x, y, missing("short")]).unwrap();
+        assert_eq!(numbers, [1.0, 3.0, 3.0]);
+        assert!(remark.contains("the largest of the others"));
+        assert_eq!(
+            Given::three(&[missing("a"), missing("b"), missing("c")]),
+            None
+        );
+        assert_eq!(Given::three(&complete[..2]), None);
     }
 
     #[test]

@@ -2,8 +2,8 @@
 //!
 //! Both take continuous-time densities in SI units, one number for all axes: the white noise of the
 //! rate in rad/s/√Hz and the white noise that drives its bias in rad/s²/√Hz, which is the rate random
-//! walk coefficient K (Kalibr's wiki, "IMU Noise Model"). Kalibr refuses a density that is missing or
-//! not above zero. A density that a record does not give is left out, and a comment gives the reason.
+//! walk coefficient K (Kalibr's wiki, "IMU Noise Model"). Both stop if a density is missing, and Kalibr
+//! also if it is not above zero. A density that a record does not give is left out, and a comment gives the reason.
 
 use super::{
     arguments::Arguments,
@@ -14,13 +14,10 @@ use super::{
 };
 use std::fmt::Write;
 
-/// The reason why the densities of the accelerometer are missing, up to the name of an option.
-const ACCELEROMETER: &str = "not part of a gyro record: fill it in, or give it with";
-
 /// Kalibr's imu.yaml.
 pub(super) fn kalibr(known: &Characterisation, arguments: &Arguments) -> String {
     let mut text = String::new();
-    body(&mut text, "", known, arguments);
+    body(&mut text, "", "Kalibr then stops", known, arguments);
     text + &summary::below(known, "#")
 }
 
@@ -29,7 +26,7 @@ pub(super) fn kalibr(known: &Characterisation, arguments: &Arguments) -> String 
 pub(super) fn openvins(known: &Characterisation, arguments: &Arguments) -> String {
     let mut text = "%YAML:1.0\n\nimu0:\n".to_owned();
     matrix(&mut text, "T_i_b", 4, "1.0");
-    body(&mut text, "  ", known, arguments);
+    body(&mut text, "  ", "OpenVINS then stops", known, arguments);
     text += "  time_offset: 0.0\n  model: \"kalibr\"\n";
     // OpenVINS requires the intrinsics. A noise record says nothing about them, so they are neutral.
     for name in ["Tw", "R_IMUtoGYRO", "Ta", "R_IMUtoACC"] {
@@ -49,7 +46,13 @@ fn matrix(text: &mut String, name: &str, size: usize, diagonal: &str) {
     }
 }
 
-fn body(text: &mut String, indent: &str, known: &Characterisation, arguments: &Arguments) {
+fn body(
+    text: &mut String,
+    indent: &str,
+    without: &str,
+    known: &Characterisation,
+    arguments: &Arguments,
+) {
     let (live, beside) = known.chosen(arguments.overbound);
     for (choice, mark) in [(live, ""), (beside, "# ")] {
         let Choice { name, pair } = choice;
@@ -67,7 +70,8 @@ fn body(text: &mut String, indent: &str, known: &Characterisation, arguments: &A
             ),
         ];
         for (key, given, unit) in both {
-            line(text, indent, mark, key, given, unit);
+            let given = given.clone().without(without);
+            line(text, indent, mark, key, &given, unit);
         }
         if let Some(density) = pair.noise_density.value() {
             let sigma = number_at(density, known.rate_hz);
@@ -77,27 +81,21 @@ fn body(text: &mut String, indent: &str, known: &Characterisation, arguments: &A
             );
         }
     }
+    let pair = &known.accelerometer.pair;
     let accelerometer = [
         (
             "accelerometer_noise_density",
-            "--accelerometer-noise-density",
-            arguments.accelerometer_noise_density,
+            &pair.noise_density,
             "m/s^2/sqrt(Hz)",
         ),
         (
             "accelerometer_random_walk",
-            "--accelerometer-random-walk",
-            arguments.accelerometer_random_walk,
+            &pair.random_walk,
             "m/s^3/sqrt(Hz)",
         ),
     ];
-    for (key, option, value, unit) in accelerometer {
-        let given = value.map_or_else(
-            || Given::Missing {
-                why: format!("{ACCELEROMETER} {option}"),
-            },
-            Given::plain,
-        );
+    for (key, given, unit) in accelerometer {
+        let given = given.clone().without(without);
         line(text, indent, "", key, &given, unit);
     }
     // A JSON string is also a YAML string.

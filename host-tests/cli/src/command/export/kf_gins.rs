@@ -1,7 +1,8 @@
 //! The noise of the gyro in the configuration of KF-GINS.
 //!
 //! KF-GINS takes the angle random walk in deg/√h, and for the bias a Gauss–Markov process with a standard deviation in
-//! deg/h for each axis and one correlation time in hours (`GIEngine::GIEngine`, where the driving noise is `2 σ²/T`).
+//! deg/h for each axis and one correlation time in hours (`GIEngine::GIEngine`, where the driving noise is `2 σ²/T`). The
+//! accelerometer has the same with m/s/√h and mGal, and the same correlation time. KF-GINS stops if a key is missing.
 
 use super::{
     arguments::Arguments, axis_noise::AxisNoise, characterisation::Characterisation,
@@ -12,6 +13,12 @@ use std::fmt::Write;
 
 /// Seconds in an hour.
 const HOUR_S: f64 = 3600.0;
+
+/// A milligal in m/s².
+const MILLIGAL: f64 = 1e-5;
+
+/// What KF-GINS does if a key is left out.
+const WITHOUT: &str = "KF-GINS then stops";
 
 /// The part `imunoise` of the configuration.
 pub(super) fn yaml(known: &Characterisation, arguments: &Arguments) -> String {
@@ -28,13 +35,23 @@ pub(super) fn yaml(known: &Characterisation, arguments: &Arguments) -> String {
             "best fit"
         };
         let _ = writeln!(text, "  # {name}:");
-        body(&mut text, &format!("  {mark}"), known, is_overbound);
+        let time_s = body(&mut text, &format!("  {mark}"), known, is_overbound);
+        if mark.is_empty() {
+            accelerometer(&mut text, known, time_s);
+        }
     }
-    text += "  # vrw, abstd, gsstd and asstd are not part of a gyro record: fill them in\n";
+    text += "  # gsstd:  # ppm; not part of a record at rest: fill it in; KF-GINS then stops\n";
+    text += "  # asstd:  # ppm; not part of a record at rest: fill it in; KF-GINS then stops\n";
     text + &summary::below(known, "#")
 }
 
-fn body(text: &mut String, start: &str, known: &Characterisation, is_overbound: bool) {
+/// Writes the numbers of the gyro, and returns their correlation time.
+fn body(
+    text: &mut String,
+    start: &str,
+    known: &Characterisation,
+    is_overbound: bool,
+) -> Option<f64> {
     let density = |axis: &AxisNoise| match is_overbound {
         false => axis.white(),
         true => Given::plain(axis.overbound_with_process.noise_density),
@@ -47,58 +64,79 @@ fn body(text: &mut String, start: &str, known: &Characterisation, is_overbound: 
         .map(|axis| density(axis).times(60.0 * to_degrees))
         .collect();
     row(text, start, "arw", known, &white, "deg/sqrt(hr)");
-    let processes: Vec<(Option<GaussMarkovProcess>, String)> = known
+    let processes: Vec<(Option<GaussMarkovProcess>, &str)> = known
         .axes
         .iter()
         .map(|axis| process(axis, is_overbound))
         .collect();
-    // There is one correlation time: that of the strongest process.
-    let known_processes = processes.iter().filter_map(|(process, _)| *process);
-    let strongest = known_processes.max_by(|one, other| one.sigma.total_cmp(&other.sigma));
+    // There is one correlation time, the longest one. A process of another axis keeps the noise that drives it: then it is
+    // as fast, and its density is nowhere less than its own.
+    let times_s = processes.iter().filter_map(|(process, _)| *process);
+    let times_s = times_s.map(|process| process.correlation_time_s);
+    let time_s = times_s.reduce(f64::max);
     let sigma: Vec<Given> = processes
         .iter()
-        .map(|(process, words)| match process {
-            Some(process) => Given::Number {
-                value: process.sigma * to_degrees * HOUR_S,
-                remark: words.clone(),
+        .map(|(process, words)| match process.zip(time_s) {
+            Some((process, time_s)) => Given::Number {
+                value: GaussMarkovProcess::of_walk(process.driving(), time_s).sigma
+                    * to_degrees
+                    * HOUR_S,
+                remark: (*words).to_owned(),
             },
-            None => Given::Missing { why: words.clone() },
+            None => Given::Missing {
+                why: (*words).to_owned(),
+            },
         })
         .collect();
     row(text, start, "gbstd", known, &sigma, "deg/hr");
-    if let Some(strongest) = strongest {
-        let hours = decimal(strongest.correlation_time_s / HOUR_S);
-        let _ = writeln!(text, "{start}corrtime: {hours}  # hr");
+    let _ = match time_s {
+        Some(time_s) => writeln!(text, "{start}corrtime: {}  # hr", decimal(time_s / HOUR_S)),
+        None => writeln!(text, "  # corrtime:  # hr; there is no process; {WITHOUT}"),
+    };
+    time_s
+}
+
+/// The process that stands for the changes of the bias, and where it comes from or why there is none.
+fn process(axis: &AxisNoise, is_overbound: bool) -> (Option<GaussMarkovProcess>, &'static str) {
+    if is_overbound {
+        return match axis.overbound_with_process.gauss_markov {
+            None => (None, "the overbound needs no such process"),
+            process => (process, ""),
+        };
+    }
+    match axis.bias_process() {
+        Some((process, words)) => (Some(process), words),
+        None => (None, "the record shows no change of the bias"),
     }
 }
 
-/// The process that stands for the changes of the bias, and where it comes from.
-fn process(axis: &AxisNoise, is_overbound: bool) -> (Option<GaussMarkovProcess>, String) {
-    if is_overbound {
-        let process = axis.overbound_with_process.gauss_markov;
-        return (process, "the overbound needs no such process".into());
-    }
-    let mut found = axis.states.processes.iter().map(|one| one.process);
-    if let Some(strongest) = found.by_ref().max_by(|a, b| a.sigma.total_cmp(&b.sigma)) {
-        return (Some(strongest), String::new());
-    }
-    if let (Some(_), Some(equivalent)) = (axis.measured("B"), axis.equivalent) {
-        return (
-            Some(equivalent.process),
-            "in the place of the bias instability".into(),
-        );
-    }
-    let Some(walk) = axis.measured("K") else {
-        return (None, "the record shows no change of the bias".into());
+/// Writes the numbers of the accelerometer, whose bias has the correlation time of the gyro's.
+fn accelerometer(text: &mut String, known: &Characterisation, time_s: Option<f64>) {
+    let pair = &known.accelerometer.pair;
+    let density = pair.noise_density.clone().times(60.0);
+    let sigma = match time_s {
+        Some(time_s) => {
+            let per_walk = (0.5 * time_s).sqrt() / MILLIGAL;
+            pair.random_walk.clone().times(per_walk)
+        }
+        None => Given::Missing {
+            why: "there is no corrtime".into(),
+        },
     };
-    // Over times far below T, a process with σ = K √(T/2) is a random walk of K.
-    let time_s = axis.samples as f64 / axis.rate_hz;
-    let process = GaussMarkovProcess {
-        sigma: walk * (0.5 * time_s).sqrt(),
-        correlation_time_s: time_s,
-    };
-    let words = "K as a process as long as the record";
-    (Some(process), words.into())
+    for (key, given, unit) in [("vrw", density, "m/s/sqrt(hr)"), ("abstd", sigma, "mGal")] {
+        let given = given.without(WITHOUT);
+        let remark = match given.words() {
+            "" => String::new(),
+            words => format!("; {words}"),
+        };
+        let _ = match given.value() {
+            Some(value) => {
+                let row = [decimal(value), decimal(value), decimal(value)].join(", ");
+                writeln!(text, "  {key}: [{row}]  # {unit}{remark}")
+            }
+            None => writeln!(text, "  # {key}:  # {unit}{remark}"),
+        };
+    }
 }
 
 /// Writes a row of three numbers, or a comment with the reason why there are none.
@@ -114,19 +152,21 @@ fn row(
     let said = named.filter(|(_, given)| !given.words().is_empty());
     let said = said.map(|(axis, given)| format!("; {:?}: {}", axis.name, given.words()));
     let said: String = said.collect();
-    let values: Vec<f64> = given.iter().filter_map(Given::value).collect();
-    let row = match values.as_slice() {
-        [x, y, z] if given.len() == 3 => Some([*x, *y, *z]),
-        // One number stands for all axes if there are not three of them.
-        values if given.len() != 3 => values.iter().copied().reduce(f64::max).map(|one| [one; 3]),
-        _ => None,
-    };
+    // One number stands for all axes if there are not three of them.
+    let largest = given.iter().filter_map(Given::value).reduce(f64::max);
+    let row = Given::three(given).or_else(|| largest.map(|one| ([one; 3], "")));
     let _ = match row {
-        Some(row) => writeln!(
-            text,
-            "{start}{key}: [{}]  # {unit}{said}",
-            row.map(decimal).join(", ")
-        ),
-        None => writeln!(text, "  # {key}:  # {unit}{said}"),
+        Some((row, remark)) => {
+            let remark = match remark {
+                "" => String::new(),
+                remark => format!("; {remark}"),
+            };
+            writeln!(
+                text,
+                "{start}{key}: [{}]  # {unit}{said}{remark}",
+                row.map(decimal).join(", ")
+            )
+        }
+        None => writeln!(text, "  # {key}:  # {unit}{said}; {WITHOUT}"),
     };
 }

@@ -33,7 +33,13 @@ pub(super) fn json(known: &Characterisation, arguments: &Arguments) -> String {
     property(known, &mut best, &mut notes, "BiasInstability", |axis| {
         axis.best("B")
     });
-    property(known, &mut best, &mut notes, "RandomWalk", AxisNoise::walk);
+    property(
+        known,
+        &mut best,
+        &mut notes,
+        "RandomWalk",
+        AxisNoise::walk_beside_flicker,
+    );
     let mut above = Map::new();
     property(
         known,
@@ -49,6 +55,20 @@ pub(super) fn json(known: &Characterisation, arguments: &Arguments) -> String {
         "RandomWalk",
         AxisNoise::overbound_walk,
     );
+    let mut accelerometer = Map::new();
+    let pair = &known.accelerometer.pair;
+    for (key, given) in [
+        ("NoiseDensity", &pair.noise_density),
+        ("RandomWalk", &pair.random_walk),
+    ] {
+        if let Some(value) = given.value() {
+            accelerometer.insert(key.into(), value.into());
+        }
+        if !given.words().is_empty() {
+            let left_out = given.value().map_or(" left out", |_| "");
+            notes.push(format!("Accelerometer.{key}{left_out}: {}", given.words()));
+        }
+    }
     notes.extend(summary::lines(known));
 
     let (live, beside) = if arguments.overbound {
@@ -59,7 +79,13 @@ pub(super) fn json(known: &Characterisation, arguments: &Arguments) -> String {
     let name = &arguments.name;
     let mut file = Map::new();
     for (part, suffix) in [live, beside] {
-        file.insert(format!("{name}{suffix}"), json!({ "Gyroscope": part }));
+        let mut sensors = Map::new();
+        sensors.insert("Gyroscope".into(), part.into());
+        // The numbers of the accelerometer are those that the part for the filter has.
+        if suffix.is_empty() && !accelerometer.is_empty() {
+            sensors.insert("Accelerometer".into(), accelerometer.clone().into());
+        }
+        file.insert(format!("{name}{suffix}"), sensors.into());
     }
     file.insert(format!("{name}_notes"), notes.into());
     let file = Value::from(file);

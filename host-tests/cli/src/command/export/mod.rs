@@ -1,5 +1,6 @@
 //! `export`: writes a model in the formats of other programs.
 
+mod accelerometer;
 mod arguments;
 mod autopilot;
 mod axis_noise;
@@ -18,6 +19,7 @@ mod matlab;
 mod model_json;
 mod odometry;
 mod ros;
+mod sdf;
 mod summary;
 
 use crate::command::output::file::OutputFile;
@@ -38,7 +40,9 @@ pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), 
         Format::Kalibr => kalibr::kalibr(&known, arguments),
         Format::Openvins => kalibr::openvins(&known, arguments),
         Format::VinsFusion => odometry::vins_fusion(&known, arguments),
+        Format::OrbSlam3 => odometry::orb_slam3(&known, arguments),
         Format::LioSam => odometry::lio_sam(&known, arguments),
+        Format::FastLio => odometry::fast_lio(&known, arguments),
         Format::Gtsam => gtsam::python(&known, arguments),
         Format::KfGins => kf_gins::yaml(&known, arguments),
         Format::Ros => ros::yaml(&known, arguments),
@@ -46,6 +50,7 @@ pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), 
         Format::Px4 => autopilot::px4(&known, arguments),
         Format::Ardupilot => autopilot::ardupilot(&known, arguments),
         Format::Matlab => matlab::json(&known, arguments),
+        Format::Sdf => sdf::xml(&known, arguments),
         Format::C => c_header::header(&known, &arguments.name),
         Format::Csv => {
             curve_csv::table(&known).map_err(|error| Failure::standard_output(&error.into()))?

@@ -11,6 +11,7 @@ use allanite_host::{
     known_filter::Shape,
     overbound::{GaussMarkovProcess, Overbound},
 };
+use allanite_log::unit::Sensor;
 use serde::Serialize;
 
 /// The document.
@@ -177,7 +178,7 @@ fn term(one: &Coefficient) -> Term {
     Term {
         name: one.name,
         symbol: one.symbol,
-        unit: super::summary::unit(one.half_seconds),
+        unit: super::summary::unit(Sensor::Gyro, one.half_seconds),
         state: match one.state {
             State::Measured => "measured",
             State::UpperBound => "upper_bound",

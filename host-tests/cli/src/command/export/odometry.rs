@@ -1,8 +1,12 @@
-//! Lines for the YAML of two odometries: VINS-Fusion's configuration and LIO-SAM's params.yaml.
+//! Lines for the YAML of odometries: the configurations of VINS-Fusion and FAST-LIO, the settings of ORB-SLAM3 and LIO-SAM's
+//! params.yaml.
 //!
 //! VINS-Fusion's `gyr_n` and `gyr_w` are discrete-time. `IntegrationBase::midPointIntegration` adds to the angle's
 //! variance `2 (½ dt gyr_n)²` at each sample, for two ends that it takes for independent, and to the bias `(dt gyr_w)²`.
 //! Continuous-time noise adds `N² dt` and `K² dt`, so that they are `N √(2 rate)` in rad/s and `K √rate` in rad/s².
+//! FAST-LIO's `gyr_cov` and `b_gyr_cov` are variances: `esekf::predict` adds `dt² gyr_cov` to that of the angle and
+//! `dt² b_gyr_cov` to that of the bias, so that they are `N² rate` in (rad/s)² and `K² rate` in (rad/s²)².
+//! ORB-SLAM3 multiplies `IMU.NoiseGyro` by the root of `IMU.Frequency` and divides `IMU.GyroWalk` by it: they are N and K.
 //! LIO-SAM gives `imuGyrNoise` squared to GTSAM, which takes it for continuous-time, and multiplies `imuGyrBiasN` by the
 //! root of the time between two frames: they are N and K.
 
@@ -15,117 +19,174 @@ use super::{
 };
 use std::fmt::Write;
 
-/// The names and factors of a program's configuration.
+/// The names and units of a program's configuration.
 struct Names {
     indent: &'static str,
+    /// The lines in front of the numbers, with `{topic}` and `{rate}` in them.
+    head: &'static str,
     /// White noise and random walk of the gyro, then of the accelerometer.
-    keys: [&'static str; 4],
-    units: [&'static str; 4],
-    topic: &'static str,
-    /// What N is multiplied by, and what K is.
-    factors: fn(f64) -> [f64; 2],
+    keys: [Key; 4],
+    /// White noise and random walk from the densities and the rate.
+    numbers: [fn(f64, f64) -> f64; 2],
     note: &'static str,
+}
+
+/// A number of a configuration.
+struct Key {
+    name: &'static str,
+    unit: &'static str,
+    /// What the program does if the number is left out.
+    without: &'static str,
+}
+
+const fn key(name: &'static str, unit: &'static str, without: &'static str) -> Key {
+    Key {
+        name,
+        unit,
+        without,
+    }
 }
 
 const VINS_FUSION: Names = Names {
     indent: "",
-    keys: ["gyr_n", "gyr_w", "acc_n", "acc_w"],
-    units: [
-        "rad/s, N sqrt(2 rate)",
-        "rad/s^2, K sqrt(rate)",
-        "m/s^2, density times sqrt(2 rate)",
-        "m/s^3, random walk times sqrt(rate)",
+    head: "%YAML:1.0\n\nimu_topic: {topic}\n",
+    keys: [
+        key("gyr_n", "rad/s, N sqrt(2 rate)", "VINS-Fusion then takes 0"),
+        key("gyr_w", "rad/s^2, K sqrt(rate)", "VINS-Fusion then takes 0"),
+        key(
+            "acc_n",
+            "m/s^2, density times sqrt(2 rate)",
+            "VINS-Fusion then takes 0",
+        ),
+        key(
+            "acc_w",
+            "m/s^3, random walk times sqrt(rate)",
+            "VINS-Fusion then takes 0",
+        ),
     ],
-    topic: "imu_topic",
-    factors: |rate_hz| [(2.0 * rate_hz).sqrt(), rate_hz.sqrt()],
+    numbers: [
+        |density, rate_hz| density * (2.0 * rate_hz).sqrt(),
+        |walk, rate_hz| walk * rate_hz.sqrt(),
+    ],
     note: "discrete-time, as VINS-Fusion's integration takes them at this rate",
+};
+
+const ORB_SLAM3: Names = Names {
+    indent: "",
+    head: "%YAML:1.0\n\nIMU.Frequency: {rate}  # Hz\n",
+    keys: [
+        key("IMU.NoiseGyro", "rad/s/sqrt(Hz)", "ORB-SLAM3 then stops"),
+        key("IMU.GyroWalk", "rad/s^2/sqrt(Hz)", "ORB-SLAM3 then stops"),
+        key("IMU.NoiseAcc", "m/s^2/sqrt(Hz)", "ORB-SLAM3 then stops"),
+        key("IMU.AccWalk", "m/s^3/sqrt(Hz)", "ORB-SLAM3 then stops"),
+    ],
+    numbers: [|density, _| density, |walk, _| walk],
+    note: "continuous-time",
 };
 
 const LIO_SAM: Names = Names {
     indent: "  ",
-    keys: ["imuGyrNoise", "imuGyrBiasN", "imuAccNoise", "imuAccBiasN"],
-    units: [
-        "rad/s/sqrt(Hz)",
-        "rad/s^2/sqrt(Hz)",
-        "m/s^2/sqrt(Hz)",
-        "m/s^3/sqrt(Hz)",
+    head: "lio_sam:\n  imuTopic: {topic}\n",
+    keys: [
+        key("imuGyrNoise", "rad/s/sqrt(Hz)", "LIO-SAM then takes 0.001"),
+        key("imuGyrBiasN", "rad/s^2/sqrt(Hz)", "LIO-SAM then takes 3e-5"),
+        key("imuAccNoise", "m/s^2/sqrt(Hz)", "LIO-SAM then takes 0.01"),
+        key("imuAccBiasN", "m/s^3/sqrt(Hz)", "LIO-SAM then takes 2e-4"),
     ],
-    topic: "imuTopic",
-    factors: |_| [1.0, 1.0],
+    numbers: [|density, _| density, |walk, _| walk],
     note: "continuous-time",
+};
+
+const FAST_LIO: Names = Names {
+    indent: "  ",
+    head: "common:\n  imu_topic: {topic}\n\nmapping:\n",
+    keys: [
+        key("gyr_cov", "rad^2/s^2, N^2 rate", "FAST-LIO then takes 0.1"),
+        key(
+            "b_gyr_cov",
+            "rad^2/s^4, K^2 rate",
+            "FAST-LIO then takes 1e-4",
+        ),
+        key(
+            "acc_cov",
+            "m^2/s^4, density^2 rate",
+            "FAST-LIO then takes 0.1",
+        ),
+        key(
+            "b_acc_cov",
+            "m^2/s^6, random walk^2 rate",
+            "FAST-LIO then takes 1e-4",
+        ),
+    ],
+    numbers: [|density, rate_hz| density * density * rate_hz; 2],
+    note: "variances of a sample, as FAST-LIO's prediction takes them at this rate",
 };
 
 /// The lines for VINS-Fusion, in the YAML dialect of OpenCV.
 pub(super) fn vins_fusion(known: &Characterisation, arguments: &Arguments) -> String {
-    format!(
-        "%YAML:1.0\n\n{}",
-        configuration(known, arguments, &VINS_FUSION)
-    )
+    configuration(known, arguments, &VINS_FUSION)
+}
+
+/// The lines for ORB-SLAM3, in the YAML dialect of OpenCV.
+pub(super) fn orb_slam3(known: &Characterisation, arguments: &Arguments) -> String {
+    configuration(known, arguments, &ORB_SLAM3)
 }
 
 /// The lines for LIO-SAM.
 pub(super) fn lio_sam(known: &Characterisation, arguments: &Arguments) -> String {
-    format!("lio_sam:\n{}", configuration(known, arguments, &LIO_SAM))
+    configuration(known, arguments, &LIO_SAM)
+}
+
+/// The lines for FAST-LIO.
+pub(super) fn fast_lio(known: &Characterisation, arguments: &Arguments) -> String {
+    configuration(known, arguments, &FAST_LIO)
 }
 
 fn configuration(known: &Characterisation, arguments: &Arguments, names: &Names) -> String {
     let Names {
         indent,
+        head,
         keys: [noise, walk, of_accelerometer @ ..],
-        units,
-        topic,
-        factors,
+        numbers,
         note,
     } = names;
-    let factors = factors(known.rate_hz);
-    let mut text = String::new();
+    let rate_hz = known.rate_hz;
+    let rate = decimal(rate_hz);
     // A JSON string is also a YAML string.
-    let named = serde_json::Value::from(arguments.rostopic.as_str());
-    let _ = writeln!(text, "{indent}{topic}: {named}");
+    let topic = serde_json::Value::from(arguments.rostopic.as_str()).to_string();
+    let mut text = head.replace("{rate}", &rate).replace("{topic}", &topic);
     let (live, beside) = known.chosen(arguments.overbound);
     for (Choice { name, pair }, mark) in [(live, ""), (beside, "# ")] {
-        let _ = writeln!(
-            text,
-            "{indent}# {name}, {note} ({} Hz):",
-            decimal(known.rate_hz)
-        );
+        let _ = writeln!(text, "{indent}# {name}, {note} ({rate} Hz):");
         let both = [(noise, pair.noise_density), (walk, pair.random_walk)];
-        for (at, (key, given)) in both.into_iter().enumerate() {
-            let given = given.times(factors[at]);
-            let start = format!("{indent}{mark}{key}");
-            line(&mut text, &start, &given, units[at]);
+        for ((key, given), number) in both.into_iter().zip(numbers) {
+            let given = given.map(|one| number(one, rate_hz));
+            line(&mut text, &format!("{indent}{mark}"), key, given);
         }
     }
-    let accelerometer = [
-        (
-            arguments.accelerometer_noise_density,
-            "--accelerometer-noise-density",
-        ),
-        (
-            arguments.accelerometer_random_walk,
-            "--accelerometer-random-walk",
-        ),
-    ];
-    for (at, (value, option)) in accelerometer.into_iter().enumerate() {
-        let missing = || Given::Missing {
-            why: format!("not part of a gyro record: fill it in, or give it with {option}"),
-        };
-        let given = value.map_or_else(missing, Given::plain).times(factors[at]);
-        let start = format!("{indent}{}", of_accelerometer[at]);
-        line(&mut text, &start, &given, units[at + 2]);
+    let pair = &known.accelerometer.pair;
+    let both = [&pair.noise_density, &pair.random_walk].map(Given::clone);
+    for ((key, given), number) in of_accelerometer.iter().zip(both).zip(numbers) {
+        let given = given.map(|one| number(one, rate_hz));
+        line(&mut text, indent, key, given);
     }
     text + &summary::below(known, "#")
 }
 
-/// Writes `key: value  # unit; remark`, or a comment with the reason why there is no value.
-fn line(text: &mut String, start: &str, given: &Given, unit: &str) {
-    let words = given.words();
-    let remark = match words {
+/// Writes `key: value  # unit; remark`, or a comment with the reason why there is no value and what the program does.
+fn line(text: &mut String, start: &str, key: &Key, given: Given) {
+    let Key {
+        name,
+        unit,
+        without,
+    } = key;
+    let given = given.without(without);
+    let remark = match given.words() {
         "" => String::new(),
         words => format!("; {words}"),
     };
     let _ = match given.value() {
-        Some(value) => writeln!(text, "{start}: {}  # {unit}{remark}", decimal(value)),
-        None => writeln!(text, "# {}:  # {unit}{remark}", start.trim_start()),
+        Some(value) => writeln!(text, "{start}{name}: {}  # {unit}{remark}", decimal(value)),
+        None => writeln!(text, "# {name}:  # {unit}{remark}"),
     };
 }

@@ -36,13 +36,13 @@ pub(super) fn yaml(known: &Characterisation, arguments: &Arguments) -> String {
 
 /// Writes the matrix with the squares on its diagonal, or the reason why there is none.
 fn matrix(text: &mut String, mark: &str, given: &[Given], rate_hz: f64) {
-    let sigmas: Vec<f64> = given
-        .iter()
-        .filter_map(|given| Some(given.value()? * rate_hz.sqrt()))
-        .collect();
-    let [x, y, z] = sigmas.as_slice() else {
+    let Some((densities, remark)) = Given::three(given) else {
         let words: Vec<&str> = given.iter().map(Given::words).collect();
-        let _ = writeln!(text, "# angular_velocity_covariance: {}", words.join("; "));
+        let _ = writeln!(
+            text,
+            "# angular_velocity_covariance: {}; zeros in a message mean that it is unknown",
+            words.join("; ")
+        );
         return;
     };
     let row = |row: usize, sigma: f64| {
@@ -51,12 +51,17 @@ fn matrix(text: &mut String, mark: &str, given: &[Given], rate_hz: f64) {
         };
         [0, 1, 2].map(|column| decimal(entry(column))).join(", ")
     };
-    let rows = [row(0, *x), row(1, *y), row(2, *z)];
+    let [x, y, z] = densities.map(|density| density * rate_hz.sqrt());
+    let rows = [row(0, x), row(1, y), row(2, z)];
+    let remark = match remark {
+        "" => String::new(),
+        remark => format!("; {remark}"),
+    };
     let _ = writeln!(
         text,
-        "{mark}angular_velocity_covariance: [{}]  # rad^2/s^2, row-major",
+        "{mark}angular_velocity_covariance: [{}]  # rad^2/s^2, row-major{remark}",
         rows.join(", ")
     );
-    let roots = [x, y, z].map(|sigma| decimal(*sigma)).join(", ");
+    let roots = [x, y, z].map(decimal).join(", ");
     let _ = writeln!(text, "{mark}angular_velocity_stdev: [{roots}]  # rad/s");
 }

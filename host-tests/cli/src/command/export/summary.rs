@@ -3,7 +3,7 @@
 use super::{axis_noise::AxisNoise, characterisation::Characterisation, decimal::decimal};
 use allanite::Coefficient;
 use allanite_host::{number::number, overbound::Overbound};
-use allanite_log::failure::one_line;
+use allanite_log::{failure::one_line, unit::Sensor};
 
 /// The lines of the comments, without comment marks. Names are quoted, so that no name can end a
 /// comment.
@@ -19,6 +19,7 @@ pub(super) fn lines(known: &Characterisation) -> Vec<String> {
         lines.push(String::new());
         lines.extend(of_axis(axis));
     }
+    lines.extend(known.accelerometer.lines());
     lines
 }
 
@@ -35,7 +36,8 @@ fn comment(known: &Characterisation, mark: &str) -> String {
         .collect()
 }
 
-fn of_axis(axis: &AxisNoise) -> Vec<String> {
+/// The record, the verdict and the coefficients of an axis of either sensor.
+pub(super) fn of_noise(axis: &AxisNoise) -> Vec<String> {
     let mut lines = vec![format!(
         "Axis {:?}: {} samples at {} Hz; {}",
         axis.name,
@@ -47,6 +49,11 @@ fn of_axis(axis: &AxisNoise) -> Vec<String> {
     for coefficient in &axis.coefficients {
         lines.push(of_coefficient(axis, coefficient));
     }
+    lines
+}
+
+fn of_axis(axis: &AxisNoise) -> Vec<String> {
+    let mut lines = of_noise(axis);
     lines.extend(axis.states.lines().iter().map(|line| format!("  {line}")));
     if let Some(equivalent) = axis.equivalent {
         lines.push(format!(
@@ -72,7 +79,7 @@ fn of_axis(axis: &AxisNoise) -> Vec<String> {
 
 fn of_coefficient(axis: &AxisNoise, coefficient: &Coefficient) -> String {
     let name = coefficient.name.replace('_', " ");
-    let unit = unit(coefficient.half_seconds);
+    let unit = unit(axis.sensor, coefficient.half_seconds);
     let symbol = coefficient.symbol;
     let given = axis.best(symbol);
     let what = match given.value() {
@@ -105,12 +112,16 @@ fn of_overbound(overbound: &Overbound) -> String {
 }
 
 /// The unit of a coefficient in characters that every format accepts.
-pub(super) fn unit(half_seconds: i8) -> &'static str {
-    match half_seconds {
-        2 => "rad",
-        1 => "rad/s/sqrt(Hz)",
-        0 => "rad/s",
-        -1 => "rad/s^2/sqrt(Hz)",
-        _ => "rad/s^2",
+pub(super) fn unit(sensor: Sensor, half_seconds: i8) -> &'static str {
+    let [gyro, accelerometer] = match half_seconds {
+        2 => ["rad", "m/s"],
+        1 => ["rad/s/sqrt(Hz)", "m/s^2/sqrt(Hz)"],
+        0 => ["rad/s", "m/s^2"],
+        -1 => ["rad/s^2/sqrt(Hz)", "m/s^3/sqrt(Hz)"],
+        _ => ["rad/s^2", "m/s^3"],
+    };
+    match sensor {
+        Sensor::Gyro => gyro,
+        Sensor::Accelerometer => accelerometer,
     }
 }

@@ -16,7 +16,7 @@ use clap::Args;
 use std::path::Path;
 
 /// Options that tell how to read a log.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub(crate) struct LogArguments {
     /// Samples per second [default: from the log's comment `# rate_hz=…`, else from its time stamps]
     #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
@@ -67,6 +67,29 @@ pub(crate) struct LogArguments {
 }
 
 impl LogArguments {
+    /// The same options for another sensor of the same log.
+    ///
+    /// # Errors
+    /// When an option describes the columns of one sensor.
+    pub(crate) fn of_sensor(&self, sensor: Sensor) -> Result<Self, Failure> {
+        let of_one_sensor = [
+            ("--scale", self.scale.is_some()),
+            ("--unit", self.unit.is_some()),
+            ("--columns", self.columns.is_some()),
+            ("--sensor", self.sensor.is_some()),
+        ];
+        if let Some((option, _)) = of_one_sensor.into_iter().find(|(_, given)| *given) {
+            return Err(Failure::option(
+                format!("{option} describes one sensor, and the log is read for two"),
+                "name columns and units in the log's header instead",
+            ));
+        }
+        Ok(Self {
+            sensor: Some(sensor),
+            ..self.clone()
+        })
+    }
+
     /// The options of the reader of logs.
     pub(crate) fn options(&self) -> log::Options {
         log::Options {

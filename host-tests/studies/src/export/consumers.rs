@@ -1,29 +1,52 @@
 //! Reads back what `export` wrote, by the parsers of the programs that it is for.
 
-use super::{SAMPLES, export_as, exported, gyro::Gyro};
+use super::gyro::RATE_HZ;
 use crate::peers::Python;
-use allanite_host::simulate::Preset;
+use allanite_cli::command::CommandLine;
+use allanite_host::simulate::{Coefficients, Preset, Simulator};
 use allanite_log::failure::Failure;
 use anyhow::{Result, anyhow, ensure};
+use clap::Parser;
 use serde::Deserialize;
-use std::{fs, path::Path};
+use std::{
+    fs::{self, File},
+    io::{self, BufWriter, Write},
+    path::Path,
+};
 
 /// The formats that are read back, and the model that they are compared with.
-const FORMATS: [&str; 10] = [
+const FORMATS: [&str; 14] = [
     "json",
     "kalibr",
     "openvins",
     "vins-fusion",
+    "orb-slam3",
     "lio-sam",
+    "fast-lio",
     "gtsam",
     "kf-gins",
     "ros",
     "px4",
     "ardupilot",
+    "matlab",
+    "sdf",
 ];
 
-/// The first seed that is tried: the first gyro is taken in which the diagnosis finds a process, which KF-GINS is given.
-const SEED: u64 = 9000;
+/// The samples of a record that shows white noise, bias instability and random walk.
+const LONG: usize = 1 << 17;
+
+/// The samples of a record that shows white noise alone.
+const SHORT: usize = 6000;
+
+/// The axes of a log: the gyro, of which the third axis is white, and the accelerometer.
+const AXES: [&str; 6] = [
+    "gx (deg/s)",
+    "gy (deg/s)",
+    "gz (deg/s)",
+    "ax (m/s^2)",
+    "ay (m/s^2)",
+    "az (m/s^2)",
+];
 
 /// A number that a program reads, in its own units.
 #[derive(Debug, Deserialize)]
@@ -36,11 +59,12 @@ pub struct Number {
     pub name: String,
     /// What the parser read.
     pub read: f64,
-    /// What the model has, converted by the rule of the program.
+    /// What the model has, converted by the rule of the program, or what the program takes if the number is left out.
     pub expected: f64,
 }
 
-/// Installs the parsers into this folder, writes a model in every format and reads it.
+/// Installs the parsers into this folder, writes a model in every format and reads it. A second model has no accelerometer,
+/// and a random walk that its record only bounds.
 ///
 /// # Errors
 /// When a package cannot be installed, or a file cannot be written or read.
@@ -48,23 +72,18 @@ pub fn consumers(folder: &Path) -> Result<Vec<Number>> {
     let python = Python::new(folder)?;
     python.install_all("consumers.txt")?;
     let files = folder.join("files");
-    fs::create_dir_all(&files)?;
     let log = files.join("log.csv");
-    let despite = ["--despite-invalid", "--despite-unexplained"];
-    let failed = |failure: Failure| anyhow!("{failure}");
-    for seed in SEED.. {
-        let base = Preset::Mems.coefficients();
-        Gyro::drawn(base, seed).write(&log, SAMPLES, seed)?;
-        let axis = exported(&log, &files, &despite).map_err(failed)?;
-        if axis["processes"]
-            .as_array()
-            .is_some_and(|all| !all.is_empty())
-        {
-            break;
+    fs::create_dir_all(&files)?;
+    for (name, axes, samples, options) in [
+        ("long", &AXES[..], LONG, &["--accelerometer"][..]),
+        ("short", &AXES[..1], SHORT, &[]),
+    ] {
+        write(&log, axes, samples)?;
+        let written = files.join(name);
+        fs::create_dir_all(&written)?;
+        for format in FORMATS {
+            export(&log, format, &written.join(format), options)?;
         }
-    }
-    for format in FORMATS {
-        export_as(format, &log, &files.join(format), &despite).map_err(failed)?;
     }
     let output = python.command("consumers.py").arg(&files).output()?;
     let errors = String::from_utf8_lossy(&output.stderr);
@@ -74,4 +93,56 @@ pub fn consumers(folder: &Path) -> Result<Vec<Number>> {
     Ok(numbers
         .map(serde_json::from_str)
         .collect::<Result<_, _>>()?)
+}
+
+/// Writes a log in which each axis has the noise of a gyro, or as much of it in m/s².
+fn write(path: &Path, axes: &[&str], samples: usize) -> io::Result<()> {
+    let gyro = Preset::Mems.coefficients();
+    let mut noise: Vec<Simulator> = (0..axes.len())
+        .map(|axis| {
+            // The third axis of a log, and the only one of another, have no more than white noise.
+            let gyro = match axes.len() == 1 || axis == 2 {
+                true => Coefficients {
+                    bias_instability: 0.0,
+                    rate_random_walk: 0.0,
+                    ..gyro
+                },
+                false => gyro,
+            };
+            Simulator::new(gyro, RATE_HZ, axis as u64)
+        })
+        .collect();
+    let mut file = BufWriter::new(File::create(path)?);
+    writeln!(file, "{}", axes.join(","))?;
+    for _ in 0..samples {
+        let row = noise.iter_mut().map(|axis| axis.next().unwrap_or_default());
+        let row: Vec<String> = row.map(|value| format!("{value:.4}")).collect();
+        writeln!(file, "{}", row.join(","))?;
+    }
+    file.flush()
+}
+
+/// Exports the five terms of a log in a format.
+fn export(log: &Path, format: &str, output: &Path, options: &[&str]) -> Result<()> {
+    let rate = RATE_HZ.to_string();
+    let [log, output] = [log, output].map(|path| path.to_string_lossy().into_owned());
+    let line = [
+        "allanite",
+        "--quiet",
+        "export",
+        &log,
+        "--rate",
+        &rate,
+        "--model",
+        "five-terms",
+        "--despite-invalid",
+        "--format",
+        format,
+        "--output",
+        &output,
+    ];
+    let line = line.into_iter().chain(options.iter().copied());
+    let command = CommandLine::try_parse_from(line)?;
+    let failed = |failure: Failure| anyhow!("{failure}");
+    command.run().map_err(failed)
 }

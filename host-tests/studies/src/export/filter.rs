@@ -59,8 +59,28 @@ struct Subtracted {
 }
 
 impl Model {
-    /// Takes a model from an axis of the exported JSON. With `alone`, it takes white noise and random walk, which are all
-    /// that most formats have. A bound is no measurement, and is not used.
+    /// Takes white noise and the random walk that the formats have which have no other state for the bias.
+    pub fn of_format(axis: &Value) -> Self {
+        let number = |name: &str| axis[name].as_f64().unwrap_or_default();
+        Self {
+            noise_density: number("noise_density"),
+            random_walk: number("random_walk_alone"),
+            ..Self::default()
+        }
+    }
+
+    /// Takes white noise and random walk of the overbound.
+    pub fn of_overbound(axis: &Value) -> Self {
+        let number = |name: &str| axis["overbound"][name].as_f64().unwrap_or_default();
+        Self {
+            noise_density: number("noise_density"),
+            random_walk: number("random_walk"),
+            ..Self::default()
+        }
+    }
+
+    /// Takes a model from an axis of the exported JSON. With `alone`, it takes white noise and K. A bound is no
+    /// measurement, and is not used.
     pub fn of(axis: &Value, alone: bool) -> Self {
         let all = |name: &str| axis[name].as_array().cloned().unwrap_or_default();
         let number = |value: &Value| value.as_f64().unwrap_or_default();

@@ -6,10 +6,12 @@
 mod consumers;
 mod filter;
 mod gyro;
+mod walks;
 
 pub use consumers::{Number, consumers};
 pub use filter::{Model, Run};
 pub use gyro::{Gyro, RATE_HZ, Truth};
+pub use walks::{Filtered, HELD, Walk, walks};
 
 use allanite_cli::command::CommandLine;
 use allanite_host::simulate::{Coefficients, Preset};

@@ -13,10 +13,12 @@ const FUZZING_S: u64 = 10;
 /// The orders of the queue's two threads that Miri tries.
 const MIRI_SEEDS: u32 = 8;
 /// The studies that say most about the whole, in small.
-const STUDIES: [&[&str]; 5] = [
+const STUDIES: [&[&str]; 7] = [
     &["calibration", "--records", "20"],
     &["clean", "--records", "10"],
     &["export", "--gyros", "10"],
+    &["export", "--walks", "--gyros", "20"],
+    &["export", "--consumers"],
     &["five-terms", "--records", "20"],
     &["theory"],
 ];
@@ -36,9 +38,11 @@ pub(crate) fn run(stages: &mut Stages, built: &Built) -> Result<()> {
     stages.run("Miri", || miri::miri(MIRI_SEEDS))?;
     stages.run("studies", study::test)?;
     for arguments in STUDIES {
-        stages.run(&format!("the study {}", arguments[0]), || {
-            study::run(arguments)
-        })?;
+        let name = match arguments.get(1) {
+            Some(&option @ ("--walks" | "--consumers")) => format!("the study export {option}"),
+            _ => format!("the study {}", arguments[0]),
+        };
+        stages.run(&name, || study::run(arguments))?;
     }
     stages.run("fleets", || fleet::run(&[]))
 }

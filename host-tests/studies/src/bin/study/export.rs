@@ -2,7 +2,7 @@
 
 use crate::origin::Origin;
 use allanite_host::simulate::Preset;
-use allanite_studies::export::{Exported, Outcome, consumers, study};
+use allanite_studies::export::{Exported, Filtered, HELD, Outcome, Walk, consumers, study, walks};
 use anyhow::{Result, ensure};
 use std::time::Instant;
 
@@ -72,14 +72,72 @@ fn row(name: &str, model: &str, group: &[&Outcome], of: impl Fn(&Outcome) -> &Ex
     );
 }
 
-/// Prints what the parsers of other programs read of an exported model.
+/// The share of the gyros of which a filter has to know its errors.
+const SHARE: f64 = 0.93;
+
+/// Prints how filters fare that are given no more than white noise and a random walk.
+pub(crate) fn print_walks(preset: Preset, gyros: u64, seed: u64) -> Result<()> {
+    let begun = Instant::now();
+    let all = walks(preset, seed..seed + gyros)?;
+    println!(
+        "| random walk | gyros | NEES up to {HELD} | mean NEES | median NEES | rms angle error |"
+    );
+    println!("|---|---|---|---|---|---|");
+    let row = |name: &str, of: fn(&Walk) -> Filtered| {
+        let mut nees: Vec<f64> = all.iter().map(|one| of(one).nees).collect();
+        nees.sort_by(f64::total_cmp);
+        let held = nees.iter().filter(|nees| **nees <= HELD).count();
+        let count = nees.len() as f64;
+        let mean = nees.iter().sum::<f64>() / count;
+        let squares = all.iter().map(|one| of(one).angle_error.powi(2));
+        println!(
+            "| {name} | {count} | {held} | {mean:.3} | {:.3} | {:.3} N √s |",
+            nees.get(nees.len() / 2).copied().unwrap_or(f64::NAN),
+            (squares.sum::<f64>() / count).sqrt()
+        );
+        held
+    };
+    let held = row("as exported", |one| one.exported);
+    row("overbound", |one| one.overbound);
+    row("K alone", |one| one.alone);
+    println!();
+    for one in all.iter().filter(|one| one.exported.nees > HELD) {
+        let Walk {
+            seed,
+            flicker,
+            walk,
+            exported,
+            ..
+        } = one;
+        println!(
+            "seed {seed}: (B/N)² {flicker:.2e} rad/s, K/N {walk:.2e} rad/s, NEES {:.2}",
+            exported.nees
+        );
+    }
+    let last = seed + gyros.saturating_sub(1);
+    println!("\n{}", Origin::new("export", [seed, last], begun));
+    // Few gyros may have fewer by chance.
+    let count = gyros as f64;
+    let chance = 1.645 * (SHARE * (1.0 - SHARE) * count).sqrt();
+    let least = SHARE * count - if gyros < 200 { chance } else { 0.0 };
+    ensure!(
+        held as f64 >= least,
+        "the filters of {held} of {gyros} gyros know their errors"
+    );
+    Ok(())
+}
+
+/// Prints what the parsers of other programs read of an exported model, and what they take where a number is left out.
 pub(crate) fn print_consumers() -> Result<()> {
     let folder = tempfile::tempdir()?;
     println!("| format | parser | number | read | relative difference |");
     println!("|---|---|---|---|---|");
     let mut largest = 0_f64;
     for number in consumers(folder.path())? {
-        let difference = (number.read / number.expected - 1.0).abs();
+        let difference = match number.expected {
+            0.0 => number.read.abs(),
+            expected => (number.read / expected - 1.0).abs(),
+        };
         largest = largest.max(difference);
         println!(
             "| {} | {} | `{}` | {:e} | {difference:.1e} |",

@@ -191,6 +191,9 @@ enum Study {
         /// Instead, read every format by the parser of the program that it is for
         #[arg(long)]
         consumers: bool,
+        /// Instead, give white noise and the random walk of gyros with bias instability to a filter
+        #[arg(long, conflicts_with = "consumers")]
+        walks: bool,
     },
     /// Count what is said about records with one line of random frequency and amplitude
     Lines {
@@ -420,9 +423,11 @@ fn main() -> Result<()> {
             preset,
             real,
             consumers,
-        } => match consumers {
-            true => export::print_consumers()?,
-            false => export::print(preset, gyros, seed, real)?,
+            walks,
+        } => match (consumers, walks) {
+            (true, _) => export::print_consumers()?,
+            (_, true) => export::print_walks(preset, gyros, seed)?,
+            _ => export::print(preset, gyros, seed, real)?,
         },
         Study::Lines { records } => lines::print(records),
         Study::Clean {

@@ -83,7 +83,10 @@ fn is_velocity(name: &str) -> bool {
         )
     };
     !turns.iter().any(|turn| name.contains(turn))
-        && (name.contains("vel") || name.contains("deltav") || tokens(&name).any(is_short))
+        && (["veloc", "deltav", "deltvel", "dvel"]
+            .iter()
+            .any(|word| name.contains(word))
+            || tokens(&name).any(|token| token.starts_with("vel") || is_short(token)))
 }
 
 /// Whether a column is named like a number that tells sensors apart: `I`, `instance`, `SensorId`, `device_id`, `imu`.

@@ -200,7 +200,7 @@ mod tests {
 
     #[test]
     fn numbers_beside_which_values_differ_mark_sensors() {
-        let (one, biased, noisy) = ((0.0, 1.0), (2.0, 1.0), (0.0, 3.0));
+        let (one, biased, noisy) = ((0.0, 1.0), (3.0, 1.0), (0.0, 3.0));
         let taking_turns = |row: usize| row % 2;
         let in_blocks = |row: usize| row / 8 % 2;
         for other in [biased, noisy] {

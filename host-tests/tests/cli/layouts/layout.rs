@@ -155,12 +155,7 @@ fn quantities(kind: Kind, random: &mut Random) -> Vec<Quantity> {
             &[Force, Temperature],
             &[Counter, Force],
         ],
-        Kind::Angles => &[
-            &[Angle],
-            &[Angle, Force],
-            &[Attitude, Angle],
-            &[Angle, Velocity],
-        ],
+        Kind::Angles => &[&[Angle], &[Attitude, Angle], &[Angle, Velocity]],
         Kind::Devices | Kind::Twins | Kind::Keyless => &[
             &[Rate],
             &[Rate, Force],

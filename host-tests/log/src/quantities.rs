@@ -7,6 +7,7 @@
 
 use super::columns::{AxisColumn, Columns, Look};
 use crate::{
+    MOST_AXES,
     failure::{Failure, Place},
     unit::Sensor,
 };
@@ -204,7 +205,9 @@ impl Columns {
         columns: &[usize],
     ) -> Result<Option<(Sensor, Vec<usize>)>, Failure> {
         let shown = self.shown(columns);
-        if shown.gravity.is_empty() && columns.len() <= 3 {
+        // A comment `unit=deg/s` says that all columns are rates.
+        let is_told = self.said.contains("unit=") || !(4..=MOST_AXES).contains(&columns.len());
+        if shown.gravity.is_empty() && is_told {
             return Ok(None);
         }
         let three = |first: usize| vec![first, first + 1, first + 2];

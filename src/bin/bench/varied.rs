@@ -71,7 +71,8 @@ fn scaled(hidden: &[Hidden], size: Real) -> ([Hidden; 2], usize) {
 fn off(random: &mut Random, differences: Real) -> Real {
     let bytes = random.bits().to_le_bytes();
     let four = bytes.iter().map(|&byte| Real::from(byte) - 127.5);
-    let scatter = libm::sqrt(2.0 / f64::from(0.25 * differences as f32 + 1.0)) as Real;
+    let independent = 0.25 * demonstration::double(differences) + 1.0;
+    let scatter = libm::sqrt(2.0 / independent) as Real;
     (four.sum::<Real>() / 147.8 * scatter).max(-0.9)
 }
 
@@ -93,7 +94,7 @@ fn record<const OCTAVES: usize>(random: &mut Random) -> Accumulator<OCTAVES> {
             let bytes = random.bits().to_le_bytes();
             bytes.iter().map(|&byte| i32::from(byte)).sum::<i32>() - 510
         };
-        walked += walk * noise() >> 6;
+        walked += (walk * noise()) >> 6;
         state += (slow * noise() - state) >> memory;
         let fresh = white * noise();
         if random.bits().is_multiple_of(seldom) {

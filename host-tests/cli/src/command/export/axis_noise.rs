@@ -21,8 +21,8 @@ const FLICKER_STEP: f64 = 4.0;
 
 /// What the walk of flicker noise is multiplied by. Bias instability and white noise have the same density at an angular
 /// frequency of `(B/N)²`, and so has a random walk of `B²/N`. Twice that walk has, with the white noise, at no frequency
-/// less than 94 % of the density of flicker and white noise together. The page of the study `export` set it: it is the least
-/// whole number with which the filters of 93 % of 200 gyros know their errors.
+/// less than 94 % of the density of flicker and white noise together. The page of the study `export` set it, with 200 gyros
+/// apart from those that the study counts.
 const FLICKER_WALK: f64 = 2.0;
 
 /// The noise of one axis.

@@ -12,14 +12,12 @@ mod clock;
 #[cfg(target_os = "none")]
 mod stack;
 #[cfg(target_os = "none")]
-mod varied;
-#[cfg(target_os = "none")]
 mod work;
 
 #[cfg(target_os = "none")]
 mod image {
     use crate::clock::Clock;
-    use crate::{stack, varied, work};
+    use crate::{stack, work};
     use allanite::{
         Accumulator, Axes, Curve, Model, Real,
         axis::{Courses, Gated, Moments, Spectral},
@@ -213,14 +211,8 @@ mod image {
             instructions
         );
         defmt::info!("stack_of_five_terms_{=usize} {=usize}", OCTAVES, stack);
-        let (mean, most) = varied::five_terms::<OCTAVES>(clock, RECORDS);
-        defmt::info!("instructions_varied_five_terms {=f64}", mean);
-        defmt::info!("instructions_worst_five_terms {=f64}", most);
         fitted
     }
-
-    /// The number of curves of which the most expensive one is sought.
-    const RECORDS: u32 = 1000;
 
     /// Measures a look of a self-test with a limit.
     #[inline(never)]
@@ -242,9 +234,6 @@ mod image {
             instructions
         );
         defmt::info!("stack_of_look_{=usize} {=usize}", OCTAVES, stack);
-        let (mean, most) = varied::looks::<OCTAVES>(clock, RECORDS);
-        defmt::info!("instructions_varied_look {=f64}", mean);
-        defmt::info!("instructions_worst_look {=f64}", most);
         status == Some(Status::Passed)
     }
 

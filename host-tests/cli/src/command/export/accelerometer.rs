@@ -2,8 +2,10 @@
 //! what the accelerometer beside the gyro shows.
 
 use super::{
-    arguments::Arguments, axis_noise::AxisNoise, characterisation::Pair, explained::explained,
-    given::Given, summary,
+    arguments::Arguments,
+    axis_noise::AxisNoise,
+    explained::explained,
+    given::{Given, Pair},
 };
 use allanite_log::{
     failure::{Failure, Place},
@@ -55,16 +57,6 @@ impl Accelerometer {
             random_walk: given(arguments.accelerometer_random_walk, random_walk),
         };
         Ok(Self { pair, axes })
-    }
-
-    /// What the comments say of its axes.
-    pub(super) fn lines(&self) -> Vec<String> {
-        let axes = self.axes.iter();
-        let lines = axes.map(summary::of_noise).map(|lines| {
-            let heading = [String::new(), "Accelerometer, in m/s^2 and seconds:".into()];
-            heading.into_iter().chain(lines)
-        });
-        lines.flatten().collect()
     }
 }
 

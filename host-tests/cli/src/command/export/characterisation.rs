@@ -1,8 +1,11 @@
 //! The characterisation of a gyro, from which every format is written.
 
 use super::{
-    accelerometer::Accelerometer, arguments::Arguments, axis_noise::AxisNoise,
-    explained::explained, given::Given,
+    accelerometer::Accelerometer,
+    arguments::Arguments,
+    axis_noise::AxisNoise,
+    explained::explained,
+    given::{Given, Pair},
 };
 use allanite_log::{
     failure::{Failure, Place},
@@ -58,14 +61,6 @@ impl Characterisation {
             (best, above)
         }
     }
-}
-
-/// The two continuous-time densities that most filters use.
-pub(super) struct Pair {
-    /// White noise, in rad/s/√Hz, or m/s²/√Hz of an accelerometer.
-    pub(super) noise_density: Given,
-    /// Random walk, in rad/s²/√Hz, or m/s³/√Hz of an accelerometer.
-    pub(super) random_walk: Given,
 }
 
 /// The best fit or the overbound, with its name.

@@ -9,6 +9,14 @@ pub(super) enum Given {
     Missing { why: String },
 }
 
+/// The two continuous-time densities that most filters use.
+pub(super) struct Pair {
+    /// White noise, in rad/s/√Hz, or m/s²/√Hz of an accelerometer.
+    pub(super) noise_density: Given,
+    /// Random walk, in rad/s²/√Hz, or m/s³/√Hz of an accelerometer.
+    pub(super) random_walk: Given,
+}
+
 impl Given {
     /// A number without a remark.
     pub(super) fn plain(value: f64) -> Self {

@@ -1,6 +1,9 @@
 //! The comments of every format, which tell axis by axis where the numbers come from.
 
-use super::{axis_noise::AxisNoise, characterisation::Characterisation, decimal::decimal};
+use super::{
+    accelerometer::Accelerometer, axis_noise::AxisNoise, characterisation::Characterisation,
+    decimal::decimal,
+};
 use allanite::Coefficient;
 use allanite_host::{number::number, overbound::Overbound};
 use allanite_log::{failure::one_line, unit::Sensor};
@@ -19,7 +22,7 @@ pub(super) fn lines(known: &Characterisation) -> Vec<String> {
         lines.push(String::new());
         lines.extend(of_axis(axis));
     }
-    lines.extend(known.accelerometer.lines());
+    lines.extend(of_accelerometer(&known.accelerometer));
     lines
 }
 
@@ -124,4 +127,13 @@ pub(super) fn unit(sensor: Sensor, half_seconds: i8) -> &'static str {
         Sensor::Gyro => gyro,
         Sensor::Accelerometer => accelerometer,
     }
+}
+
+/// What the comments say of the axes of the accelerometer.
+pub(super) fn of_accelerometer(accelerometer: &Accelerometer) -> Vec<String> {
+    let lines = accelerometer.axes.iter().map(of_noise).map(|lines| {
+        let heading = [String::new(), "Accelerometer, in m/s^2 and seconds:".into()];
+        heading.into_iter().chain(lines)
+    });
+    lines.flatten().collect()
 }

@@ -2,18 +2,13 @@
 
 use allanite_host::simulate::Preset;
 use allanite_studies::{
-    lag::{self, Course, Dependence},
+    lag::{self, Course, Dependence, Tally},
     thermal,
 };
 
-/// Temperatures whose course, noise and lag are drawn at random, with seeds from 0 on.
-pub(crate) fn print_drawn(records: u64) {
+fn print_heading(first: &str) {
     println!(
-        "20 Hz, {records} records of 2^16 samples a line; lag 10 … 120 s, thermometer noise 0 … 0.2 K, steps of 0.1 K in half of them"
-    );
-    println!(
-        "{:<6} {:<10} {:<9} {:>6} {:>7} {:>7} {:>7} {:>13} {:>11} {:>13}",
-        "preset",
+        "{first:<7} {:<10} {:<9} {:>6} {:>7} {:>7} {:>7} {:>13} {:>11} {:>13}",
         "course",
         "follows",
         "found",
@@ -24,6 +19,29 @@ pub(crate) fn print_drawn(records: u64) {
         "lag inside",
         "wrong effect"
     );
+}
+
+fn print_line(first: &str, course: Course, dependence: Dependence, tally: &Tally) {
+    println!(
+        "{first:<7} {:<10} {:<9} {:>6} {:>7} {:>7} {:>7} {:>13} {:>11} {:>13}",
+        format!("{course:?}"),
+        format!("{dependence:?}"),
+        tally.found,
+        tally.lagged,
+        tally.rate_of_change,
+        tally.square,
+        tally.slope_inside,
+        tally.lag_inside,
+        tally.wrong
+    );
+}
+
+/// Temperatures whose course, noise and lag are drawn at random, with seeds from 0 on.
+pub(crate) fn print_drawn(records: u64) {
+    println!(
+        "20 Hz, {records} records of 2^16 samples a line; lag 10 … 120 s, thermometer noise 0 … 0.2 K, steps of 0.1 K in half of them"
+    );
+    print_heading("preset");
     for preset in [Preset::Mems, Preset::Fog] {
         for dependence in [
             Dependence::Lagged,
@@ -33,19 +51,7 @@ pub(crate) fn print_drawn(records: u64) {
         ] {
             for course in Course::ALL {
                 let tally = lag::study(preset, course, dependence, None, records);
-                println!(
-                    "{:<6} {:<10} {:<9} {:>6} {:>7} {:>7} {:>7} {:>13} {:>11} {:>13}",
-                    format!("{preset:?}"),
-                    format!("{course:?}"),
-                    format!("{dependence:?}"),
-                    tally.found,
-                    tally.lagged,
-                    tally.rate_of_change,
-                    tally.square,
-                    tally.slope_inside,
-                    tally.lag_inside,
-                    tally.wrong
-                );
+                print_line(&format!("{preset:?}"), course, dependence, &tally);
             }
         }
     }
@@ -56,36 +62,13 @@ pub(crate) fn print_steps(records: u64) {
     println!(
         "mems at 20 Hz, {records} records of 2^16 samples a line; lag 10 … 120 s, thermometer noise 0.02 K"
     );
-    println!(
-        "{:<7} {:<10} {:<9} {:>6} {:>7} {:>7} {:>7} {:>13} {:>11} {:>13}",
-        "step, K",
-        "course",
-        "follows",
-        "found",
-        "lagged",
-        "rate",
-        "square",
-        "slope inside",
-        "lag inside",
-        "wrong effect"
-    );
+    print_heading("step, K");
     let courses = [Course::WarmUp, Course::SlowCycle, Course::Ramp];
     for dependence in [Dependence::AtOnce, Dependence::Lagged, Dependence::None] {
         for step in [0.01, 0.1, 0.5, 1.0] {
             for course in courses {
                 let tally = lag::study(Preset::Mems, course, dependence, Some(step), records);
-                println!(
-                    "{step:<7} {:<10} {:<9} {:>6} {:>7} {:>7} {:>7} {:>13} {:>11} {:>13}",
-                    format!("{course:?}"),
-                    format!("{dependence:?}"),
-                    tally.found,
-                    tally.lagged,
-                    tally.rate_of_change,
-                    tally.square,
-                    tally.slope_inside,
-                    tally.lag_inside,
-                    tally.wrong
-                );
+                print_line(&step.to_string(), course, dependence, &tally);
             }
         }
     }

@@ -124,11 +124,18 @@ const FIGURES: [(&str, &str, &str); 26] = [
 
 const NOTE: &str = "QEMU counts instructions, not cycles";
 
-pub(crate) fn run(json: bool, update_budgets: bool, core: Option<&str>) -> Result<()> {
-    if let Some(core) = core {
-        println!("{:#}", budgets::measured_of(core)?);
-        return Ok(());
-    }
+/// One core in both precisions: its budgets, or the most expensive ones of a thousand fits and looks.
+pub(crate) fn of_core(core: &str, worst: bool) -> Result<()> {
+    let measure = if worst {
+        measure::worst
+    } else {
+        measure::measured
+    };
+    println!("{:#}", budgets::of_core(core, measure)?);
+    Ok(())
+}
+
+pub(crate) fn run(json: bool, update_budgets: bool) -> Result<()> {
     if !json {
         setup::run()?;
     }

@@ -120,6 +120,9 @@ enum Task {
         /// Measure one core alone, such as Cortex-M4F, and print JSON.
         #[arg(long, value_name = "NAME", conflicts_with_all = ["json", "update_budgets"])]
         core: Option<String>,
+        /// Seek the fit and the look that cost most among a thousand each, which takes minutes.
+        #[arg(long, requires = "core")]
+        worst: bool,
     },
     /// Build the static library for C, and put it beside its header and a package of CMake.
     C {
@@ -220,7 +223,11 @@ impl CommandLine {
                 json,
                 update_budgets,
                 core,
-            } => bench::run(json, update_budgets, core.as_deref()),
+                worst,
+            } => match core {
+                Some(core) => bench::of_core(&core, worst),
+                None => bench::run(json, update_budgets),
+            },
             Task::C {
                 octaves,
                 one_axis,

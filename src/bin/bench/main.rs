@@ -12,12 +12,14 @@ mod clock;
 #[cfg(target_os = "none")]
 mod stack;
 #[cfg(target_os = "none")]
+mod varied;
+#[cfg(target_os = "none")]
 mod work;
 
 #[cfg(target_os = "none")]
 mod image {
     use crate::clock::Clock;
-    use crate::{stack, work};
+    use crate::{stack, varied, work};
     use allanite::{
         Accumulator, Axes, Curve, Model, Real,
         axis::{Courses, Gated, Moments, Spectral},
@@ -49,6 +51,8 @@ mod image {
             semihosting::process::exit(1);
         };
         let done = with_extent(|extent| match extent {
+            "worst" if IS_SMALL => worst_of_all::<SMALL>(&clock),
+            "worst" => worst_of_all::<USUAL>(&clock),
             _ if IS_SMALL => {
                 samples(&clock);
                 worst::<24>(&clock, SOON);
@@ -211,7 +215,25 @@ mod image {
             instructions
         );
         defmt::info!("stack_of_five_terms_{=usize} {=usize}", OCTAVES, stack);
+        let [costliest, _] = varied::COSTLIEST;
+        let Some(worst) = varied::five_terms::<OCTAVES>(clock, costliest) else {
+            return false;
+        };
+        defmt::info!("instructions_worst_five_terms {=f64}", worst);
         fitted
+    }
+
+    /// Measures the fits of a thousand curves and the looks at a thousand records.
+    #[inline(never)]
+    fn worst_of_all<const OCTAVES: usize>(clock: &Clock) -> bool {
+        let fits = varied::Costs::of(|number| varied::five_terms::<OCTAVES>(clock, number));
+        let looks = varied::Costs::of(|number| varied::of_look::<OCTAVES>(clock, number));
+        for (of, costs) in [("fit", fits), ("look", looks)] {
+            defmt::info!("{=str}_mean {=f64}", of, costs.mean);
+            defmt::info!("{=str}_worst {=f64}", of, costs.most);
+            defmt::info!("{=str}_costliest {=u32}", of, costs.costliest);
+        }
+        true
     }
 
     /// Measures a look of a self-test with a limit.
@@ -234,6 +256,11 @@ mod image {
             instructions
         );
         defmt::info!("stack_of_look_{=usize} {=usize}", OCTAVES, stack);
+        let [_, costliest] = varied::COSTLIEST;
+        let Some(worst) = varied::of_look::<OCTAVES>(clock, costliest) else {
+            return false;
+        };
+        defmt::info!("instructions_worst_look {=f64}", worst);
         status == Some(Status::Passed)
     }
 

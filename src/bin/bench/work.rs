@@ -251,29 +251,40 @@ pub(crate) fn spectrum<const B: usize>(hidden: &[Hidden]) -> Option<Spectrum<B>>
 
 /// The curve of a gyro with all five terms and hidden effects. Each octave deviates by a few per cent.
 pub(crate) fn curve<const OCTAVES: usize>(hidden: &[Hidden]) -> Option<Curve<OCTAVES>> {
+    let mut offs = [0.3, -0.5, 0.9, -0.2, -0.7].iter().cycle();
+    let next = |differences| offs.next().copied().unwrap_or(0.0) / (differences * 0.2 + 9.0);
+    curve_of(&[1.0; 5], hidden, next)
+}
+
+/// The same with the squares of the coefficients multiplied, and with other deviations of an octave of so many differences.
+pub(crate) fn curve_of<const OCTAVES: usize>(
+    squares: &[Real; 5],
+    hidden: &[Hidden],
+    mut off: impl FnMut(Real) -> Real,
+) -> Option<Curve<OCTAVES>> {
     let is_filter = |(effect, ..): &Hidden| effect.replaces().is_some();
+    let [quantization, white, flicker, walk, ramp] = squares;
     let white = if hidden.iter().any(is_filter) {
         0.0
     } else {
-        2.5e-5
+        2.5e-5 * white
     };
     let octaves = (0..OCTAVES).map(|k| {
         let m = 1_u32 << k;
         let averaged = (1_u64 << k) as Real;
         let tau_s = averaged / 100.0;
-        let smooth = 1.2e-7 / (tau_s * tau_s)
+        let smooth = 1.2e-7 * quantization / (tau_s * tau_s)
             + white / tau_s
-            + 7.1e-6
-            + 3.0e-8 * tau_s
-            + 1.3e-11 * tau_s * tau_s;
+            + 7.1e-6 * flicker
+            + 3.0e-8 * walk * tau_s
+            + 1.3e-11 * ramp * tau_s * tau_s;
         let more = hidden.iter().map(|&(effect, parameters, coefficient)| {
             let shape = SampledShape::known(0.01, parameters);
             coefficient * coefficient * effect.variance(averaged, &shape)
         });
         let smooth = smooth + more.sum::<Real>();
         let differences = (2_u64 << OCTAVES) / u64::from((m / 4).max(1)) - 7;
-        let off = [0.3, -0.5, 0.9, -0.2, -0.7][k % 5] / (differences as Real * 0.2 + 9.0);
-        (m, differences, smooth * (1.0 + off))
+        (m, differences, smooth * (1.0 + off(differences as Real)))
     });
     Curve::new(100.0, octaves).ok()
 }

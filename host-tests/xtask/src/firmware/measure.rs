@@ -50,6 +50,26 @@ pub fn figures(core: &Core) -> Result<Map<String, Value>> {
     Ok(figures)
 }
 
+/// The entry of a core in the list of cores.
+///
+/// # Errors
+/// Fails if an image cannot be built or run, or if a figure was not measured.
+pub fn measured(core: &Core) -> Result<Value> {
+    entry(core, &figures(core)?)
+}
+
+/// The mean, the most and the number of the costliest one, in instructions, of a thousand fits of the five terms and of as
+/// many looks.
+///
+/// # Errors
+/// Fails if the image cannot be built or run.
+pub fn worst(core: &Core) -> Result<Value> {
+    let mut figures = logged("bench", core, "worst")?;
+    figures.insert("core".into(), core.name.into());
+    figures.insert("precision".into(), core.precision.name().into());
+    Ok(figures.into())
+}
+
 /// The numbers that an image logs on a core.
 fn logged(image: &str, core: &Core, extent: &str) -> Result<Map<String, Value>> {
     let run = run_with(&Image::build_for(image, core)?, &[extent])?;
@@ -83,6 +103,8 @@ pub fn entry(core: &Core, figures: &Map<String, Value>) -> Result<Value> {
         "stack_bytes_five_terms": largest(figures, "stack_of_five_terms_"),
         "flash_bytes_self_test": whole("flash_bytes_self_test")?,
         "stack_bytes_look": largest(figures, "stack_of_look_"),
+        "instructions_worst_five_terms": whole("instructions_worst_five_terms")?,
+        "instructions_worst_look": whole("instructions_worst_look")?,
         "instructions_look": largest(figures, "instructions_of_look_"),
         "instructions_diagnosis": largest(figures, "instructions_diagnosis_"),
         "flash_bytes": whole("flash_bytes")?,

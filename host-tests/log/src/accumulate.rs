@@ -188,7 +188,7 @@ impl Visitor for Nothing {
 }
 
 /// Accumulates the given columns, and once more if stamps turned out to be late: only behind a stamp, the rows tell
-/// whether samples were lost before it. Samples that the logger repeated are left out in another pass, because only the
+/// whether samples were lost before it. Samples that the logger repeated or interpolated are left out in another pass, because only the
 /// whole record tells them.
 pub(super) fn measure<T: Table>(passes: &Passes<T>, plan: &Plan) -> Result<Measured, Failure> {
     let again = |late: &[Late]| Passes {
@@ -205,7 +205,7 @@ pub(super) fn measure<T: Table>(passes: &Passes<T>, plan: &Plan) -> Result<Measu
     if !late.is_empty() {
         measured = measure_once(&again(&late), plan)?;
     }
-    let Some(faults) = measured.faults.without_repeats() else {
+    let Some(faults) = measured.faults.without_copies() else {
         return Ok(measured);
     };
     let plan = Plan {

@@ -1,6 +1,6 @@
-//! Watches what a logger did to the samples of the axes, and leaves out samples that it repeated.
+//! Watches what a logger did to the samples of the axes, and leaves out samples that it repeated or interpolated.
 
-use super::{Places, Repeats};
+use super::{Places, Repeats, between::Between};
 use allanite::{
     faults::{JointRepeats, Reads, SampleFaults},
     integrity::Reason,
@@ -21,7 +21,9 @@ pub(super) struct Plan {
     pub(super) by_rows: bool,
     /// The share of the rows that the logger repeated, if rows are left out in which all axes repeat.
     pub(super) left_out: Option<f64>,
-    /// What to do with repeats that are certain.
+    /// How far, in counts, interpolated rows lie from the line between their neighbours, if they are left out.
+    pub(super) between: Option<f64>,
+    /// What to do with repeats and interpolated rows that are certain.
     pub(super) repeats: Repeats,
 }
 
@@ -35,6 +37,7 @@ pub(super) struct Faults {
     places: Vec<Places>,
     /// The last row, unless a gap follows it.
     last: Vec<i32>,
+    between: Between,
     rows: u64,
     dropped: u64,
 }
@@ -53,6 +56,7 @@ impl Faults {
             sensors: vec![Reads::new(); sensors],
             places: vec![Places::default(); if sensors > 0 { sensors } else { axes }],
             last: Vec::new(),
+            between: Between::default(),
             rows: 0,
             dropped: 0,
             plan,
@@ -77,8 +81,13 @@ impl Faults {
     pub(super) fn push_rows(&mut self, columns: &mut [Vec<i32>]) {
         let axes = self.axes.len();
         self.rows += columns[0].len() as u64;
-        if self.plan.left_out.is_some() {
-            self.drop_repeats(columns);
+        match (self.plan.left_out, self.plan.between) {
+            (Some(_), _) => self.drop_repeats(columns),
+            (None, Some(limit)) => {
+                let found = self.between.find(&columns[..axes], limit);
+                self.drop(columns, &found);
+            }
+            (None, None) => self.between.push(&columns[..axes]),
         }
         if self.sensors.is_empty() {
             return columns[..axes]
@@ -114,15 +123,21 @@ impl Faults {
         if rows > 0 {
             self.last = axes.iter().map(|axis| axis[rows - 1]).collect();
         }
-        self.dropped += repeats.iter().filter(|&&repeats| repeats).count() as u64;
+        self.drop(columns, &repeats);
+    }
+
+    /// Takes rows out of all columns.
+    fn drop(&mut self, columns: &mut [Vec<i32>], rows: &[bool]) {
+        self.dropped += rows.iter().filter(|&&is_dropped| is_dropped).count() as u64;
         for column in columns {
-            let mut repeats = repeats.iter();
-            column.retain(|_| !repeats.next().copied().unwrap_or(false));
+            let mut rows = rows.iter();
+            column.retain(|_| !rows.next().copied().unwrap_or(false));
         }
     }
 
     pub(super) fn gap(&mut self) {
         self.last.clear();
+        self.between.gap();
         self.axes.iter_mut().for_each(SampleFaults::gap);
         self.places.iter_mut().for_each(Places::gap);
         self.sensors.iter_mut().for_each(Reads::gap);
@@ -168,13 +183,32 @@ impl Faults {
         reads.is_some_and(|reads| reads.joint().is_alternating())
     }
 
-    /// The plan of another pass that leaves out the repeats, if all of them are certain: hardly any is there by chance,
-    /// all axes have them, and no value is held.
-    pub(super) fn without_repeats(&self) -> Option<Plan> {
-        if self.plan.repeats == Repeats::Keep || self.plan.left_out.is_some() || !self.plan.by_rows
-        {
+    /// The plan of another pass that leaves out the rows that are no samples of the sensor, if they are certain.
+    pub(super) fn without_copies(&self) -> Option<Plan> {
+        let Plan {
+            left_out,
+            between,
+            repeats,
+            by_rows,
+            ..
+        } = self.plan;
+        if repeats == Repeats::Keep || left_out.is_some() || between.is_some() || !by_rows {
             return None;
         }
+        let between = || {
+            let is_sound = (0..self.axes.len()).all(|axis| self.verdict(axis).is_none());
+            let limit = self.between.limit().filter(|_| is_sound)?;
+            Some(Plan {
+                between: Some(limit),
+                ..self.plan.clone()
+            })
+        };
+        self.without_repeats().or_else(between)
+    }
+
+    /// The plan without the repeats, if all of them are certain: hardly any is there by chance, all axes have them, and no
+    /// value is held.
+    fn without_repeats(&self) -> Option<Plan> {
         let verdicts = (0..self.axes.len()).map(|axis| self.verdict(axis));
         let mut others = verdicts.flatten();
         if others.any(|reason| !matches!(reason, Reason::Repeated { .. })) {
@@ -202,8 +236,18 @@ impl Faults {
         })
     }
 
-    /// The rate of the sensor, of a record with this one, and a note on the repeats that were left out.
+    /// The rate of the sensor, of a record with this one, and a note on the rows that were left out.
     pub(super) fn sensor_rate(&self, rate_hz: f64) -> (f64, Option<String>) {
+        if self.plan.between.is_some() {
+            let share = self.dropped as f64 / self.rows.max(1) as f64;
+            let rate_hz = rate_of(1.0 - share, self.rows, rate_hz);
+            let note = format!(
+                "{:.1} % of the rows lie on the straight line between their neighbours: the sensor runs at {rate_hz} Hz; the {} interpolated rows are left out (keep them with --repeats keep)",
+                100.0 * share,
+                self.dropped
+            );
+            return (rate_hz, Some(note));
+        }
         let Some(share) = self.plan.left_out else {
             return (rate_hz, None);
         };

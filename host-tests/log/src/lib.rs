@@ -54,6 +54,10 @@
 //! sensor does so by chance, the repeats are left out, the rate is that of the sensor, and a note says so. Where chance
 //! repeats are too many, the curve is not valid, and the reason tells the rate of the sensor.
 //!
+//! Rows that a program interpolated linearly between two samples, to a faster rate or to the times of another sensor, are
+//! left out likewise. Of two or three axes, they lie the same share of the way from the row before to the row behind,
+//! except for rounding.
+//!
 //! # Temperatures
 //!
 //! [`read_with_evidence`] takes the first two columns that are named like a temperature (`temp_C`,
@@ -96,6 +100,7 @@ mod bag_mcap;
 mod bag_ros1;
 #[cfg(feature = "bags")]
 mod bag_sqlite;
+mod between;
 pub mod block_means;
 #[cfg(feature = "bags")]
 mod channel;
@@ -233,13 +238,13 @@ pub struct Options {
     pub topic: Option<String>,
     /// The rows to read, in a log with the rows of several sensors.
     pub rows: Option<RowChoice>,
-    /// What to do with samples that the logger repeated.
+    /// What to do with samples that the logger repeated or interpolated.
     pub repeats: Repeats,
     /// What is left out.
     pub cuts: Cuts,
 }
 
-/// What to do with samples that the logger repeated, where it is certain that the sensor did not.
+/// What to do with samples that the logger repeated or interpolated, where it is certain that the sensor did not give them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
 pub enum Repeats {
     /// Leave them out, and take the rate of the sensor.

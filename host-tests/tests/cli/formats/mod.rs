@@ -5,6 +5,7 @@ mod around;
 mod broken;
 mod cases;
 mod hdf5;
+mod interpolated;
 mod layouts;
 mod measurements;
 mod origins;

@@ -51,7 +51,7 @@ pub(crate) struct LogArguments {
     /// Read only the rows that have this value in this column, such as `SensorId=1`, in a log with the rows of several sensors
     #[arg(long, value_name = "COLUMN=VALUE")]
     rows: Option<RowChoice>,
-    /// What to do with samples that a logger faster than the sensor repeated, where that is certain
+    /// What to do with samples that the logger repeated or interpolated, where that is certain
     #[arg(long, value_name = "CHOICE", default_value = "drop")]
     repeats: Repeats,
     /// Leave out what lies before this time from the log's first row, or with a minus sign from its last row: `10s`,

@@ -21,6 +21,9 @@ const OTHERS: f64 = 0.1;
 /// A step of fewer counts tells no line.
 const SHORTEST: i64 = 8;
 
+/// So many times more rows lie on the line than chance puts there. Chosen by hand: the estimate of chance is a rough one.
+const BEYOND_CHANCE: f64 = 10.0;
+
 /// Counts rows whose values all lie the same share of the way from the row before to the row behind.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Between {
@@ -28,6 +31,36 @@ pub(super) struct Between {
     /// By octaves of the distance from the line.
     distances: [u64; OCTAVES],
     last: [Vec<i32>; 2],
+    /// Of each axis.
+    grids: Vec<Grid>,
+}
+
+/// How fine the values of an axis are beside their changes.
+#[derive(Clone, Debug, Default)]
+struct Grid {
+    /// The least step between neighbours that differ; 0 for none yet.
+    least: u64,
+    /// The sum of the absolute second differences, and their number.
+    bends: f64,
+    rows: f64,
+}
+
+impl Grid {
+    fn push(&mut self, [before, row, behind]: [i32; 3]) {
+        let [step, next] = [row, behind].map(i64::from);
+        let (step, next) = (step - i64::from(before), next - step);
+        if step != 0 && (self.least == 0 || step.unsigned_abs() < self.least) {
+            self.least = step.unsigned_abs();
+        }
+        self.bends += (next - step).unsigned_abs() as f64;
+        self.rows += 1.0;
+    }
+
+    /// The probability that a row lies within a distance of a point that has nothing to do with it, about.
+    fn chance(&self, distance: f64) -> f64 {
+        let window = 2.0 * distance.max(self.least as f64);
+        (window * self.rows / self.bends).min(1.0)
+    }
 }
 
 impl Between {
@@ -38,8 +71,13 @@ impl Between {
         }
         let rows = axes.first().map_or(0, Vec::len);
         self.examined += rows as u64;
+        self.grids.resize(axes.len(), Grid::default());
         for row in 0..rows {
             let here: Vec<i32> = axes.iter().map(|axis| axis[row]).collect();
+            let rows = self.last[0].iter().zip(&self.last[1]).zip(&here);
+            for (grid, ((&before, &row), &behind)) in self.grids.iter_mut().zip(rows) {
+                grid.push([before, row, behind]);
+            }
             if let Some(distance) = self.distance_of_last(&here) {
                 let octave = distance.max(1.0).log2().ceil() as usize;
                 self.distances[octave.min(OCTAVES - 1)] += 1;
@@ -78,7 +116,16 @@ impl Between {
         let octave = (0..last).find(|&octave| MORE * up_to(octave) >= up_to(last));
         let octave = octave.unwrap_or(last);
         // The tail of what rounding leaves reaches into the next octave.
-        Some((2_u64 << octave) as f64)
+        let limit = (2_u64 << octave) as f64;
+        (up_to(octave) >= BEYOND_CHANCE * self.expected(limit)).then_some(limit)
+    }
+
+    /// The number of rows that lie so near the line by chance, about. The axis with the longest step tells the place on the line,
+    /// which a third of all rows have between the others.
+    fn expected(&self, limit: f64) -> f64 {
+        let mut chances: Vec<f64> = self.grids.iter().map(|grid| grid.chance(limit)).collect();
+        chances.sort_unstable_by(f64::total_cmp);
+        chances.iter().skip(1).product::<f64>() * self.examined as f64 / 3.0
     }
 
     /// Which of these rows lie within a distance of the line between their neighbours. The last one is not among them,
@@ -202,6 +249,28 @@ mod tests {
                 None,
                 "{counts} {mean_of}"
             );
+        }
+    }
+
+    /// Values on a grid lie exactly on the line now and then, and far from it else.
+    #[test]
+    fn noise_on_a_grid_has_none_either() {
+        const GRID: i32 = 1_000_000;
+        for steps in [1, 2, 3, 5, 8, 15] {
+            for finer in [1, 2, 3, 5, 8] {
+                let [x, y, z] = noise(60_000, f64::from(2 * steps) + 0.9, 1);
+                let on_grid = |axis: Vec<i32>, finer: i32| -> Vec<i32> {
+                    axis.iter().map(|count| count / finer * GRID).collect()
+                };
+                let rows = [on_grid(x, 1), on_grid(y, finer), on_grid(z, finer)];
+                let mut of_two = Between::default();
+                of_two.push(&rows[..2]);
+                assert_eq!(
+                    (of_two.limit(), limit(&rows)),
+                    (None, None),
+                    "{steps} {finer}"
+                );
+            }
         }
     }
 }

@@ -12,6 +12,7 @@ use datafusion::{
     logical_expr::{
         Accumulator, AggregateUDFImpl, GroupsAccumulator, Signature, Volatility,
         function::{AccumulatorArgs, StateFieldsArgs},
+        utils::AggregateOrderSensitivity,
     },
 };
 use std::sync::Arc;
@@ -63,6 +64,11 @@ impl AggregateUDFImpl for Aggregate {
     fn accumulator(&self, arguments: AccumulatorArgs) -> Result<Box<dyn Accumulator>> {
         self.is_plain(&arguments)?;
         Ok(Box::new(One::new(self.rows)))
+    }
+
+    fn order_sensitivity(&self) -> AggregateOrderSensitivity {
+        // Otherwise the engine sorts each part of the rows, and hands over the columns of the order as well.
+        AggregateOrderSensitivity::Insensitive
     }
 
     fn groups_accumulator_supported(&self, arguments: AccumulatorArgs) -> bool {

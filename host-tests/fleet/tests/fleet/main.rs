@@ -2,4 +2,5 @@
 
 mod cluster;
 mod logs;
+mod order;
 mod queries;

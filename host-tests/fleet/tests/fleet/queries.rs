@@ -3,7 +3,10 @@
 use crate::logs::{Fleet, RATE_HZ, Row, SCALE, found, random, write, write_columns};
 use allanite::{diagnosis::Verdict, integrity::Reason};
 use allanite_fleet::cluster::local;
-use allanite_host::interface::{Record, options::Fitting};
+use allanite_host::interface::{
+    Record,
+    options::{Fitting, Search},
+};
 use allanite_log::{pieces::Pieces, unit::Unit};
 use datafusion::{
     arrow::{
@@ -24,7 +27,11 @@ const INVALID: Verdict = Verdict::Invalid(Reason::Spiked {
 
 pub(crate) const STATES: &str = "SELECT device, axis, allan_state(start, counts, rate, scale) AS state FROM logs GROUP BY device, axis ORDER BY device, axis";
 
-async fn session(tables: &[(&str, &Path)], partitions: usize, rows: usize) -> SessionContext {
+pub(crate) async fn session(
+    tables: &[(&str, &Path)],
+    partitions: usize,
+    rows: usize,
+) -> SessionContext {
     let settings = SessionConfig::new()
         .with_target_partitions(partitions)
         .with_batch_size(rows);
@@ -39,7 +46,10 @@ async fn session(tables: &[(&str, &Path)], partitions: usize, rows: usize) -> Se
     session
 }
 
-async fn asked(session: &SessionContext, query: &str) -> Result<Vec<RecordBatch>, DataFusionError> {
+pub(crate) async fn asked(
+    session: &SessionContext,
+    query: &str,
+) -> Result<Vec<RecordBatch>, DataFusionError> {
     session.sql(query).await?.collect().await
 }
 
@@ -167,7 +177,11 @@ async fn coefficients_and_diagnoses_are_those_of_the_command_line() {
             .unwrap()
             .as_primitive::<Int64Type>();
         assert_eq!(samples.value(at), 40_000);
-        let diagnosis = record.diagnose(&[], &mut |_| true).unwrap().json().unwrap();
+        let diagnosis = record
+            .diagnose(&Search::default(), &mut |_| true)
+            .unwrap()
+            .json()
+            .unwrap();
         let diagnosis: serde_json::Value = serde_json::from_str(&diagnosis).unwrap();
         let verdict = rows.column_by_name("verdict").unwrap().as_string::<i32>();
         assert_eq!(verdict.value(at), diagnosis["axes"][0]["verdict"]);

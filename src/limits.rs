@@ -33,6 +33,11 @@ pub(crate) const ONE_SIDED_95: f64 = 1.644_854;
 /// [`TWO_SIDED_95`] (Abramowitz & Stegun 1964, table 26.8).
 pub(crate) const CHI_SQUARED_95: f64 = 3.841_459;
 
+/// An estimate whose expected square is this many variances exceeds [`TWO_SIDED_95`] standard errors in four of five records: the
+/// square of the sum of that quantile and the one that a normal variable lies below with a probability of 80 %, 0.841621
+/// (Abramowitz & Stegun 1964, table 26.5).
+pub(crate) const SHOWN_IN_80: f64 = 7.848_879;
+
 /// A model with a lower p-value is not adequate: if it were true, a χ² as large would come out in one
 /// of a hundred records. Fit, comparison and diagnosis share this threshold. By convention; with it,
 /// `cargo xtask study hidden-effect` claims an effect in less than 1 % of the records that hide none.
@@ -52,5 +57,6 @@ mod tests {
         assert!((beyond(ONE_SIDED_95) - 0.05).abs() < 1e-7);
         assert!((CHI_SQUARED_95 - TWO_SIDED_95 * TWO_SIDED_95).abs() < 2e-6);
         assert!((chi_squared_tail(real(CHI_SQUARED_95), 1) - 0.05).abs() < 1e-6);
+        assert!((beyond(TWO_SIDED_95 - libm::sqrt(SHOWN_IN_80)) - 0.8).abs() < 1e-6);
     }
 }

@@ -1,7 +1,7 @@
 //! How long a record must be before an effect can be measured.
 
 use crate::{
-    limits::CHI_SQUARED_95,
+    limits::SHOWN_IN_80,
     list::numbered,
     numerics::{
         nnls::{Matrix, NormalEquations, PassiveSet, Vector},
@@ -15,8 +15,9 @@ const LONGEST: Real = (1_u64 << 30) as Real;
 
 /// The length, in seconds, of a record in which effect `i` would be measured. The present length is
 /// doubled as often as needed. The effect is measured where its square exceeds half the width of its 95
-/// % interval, with `square` for this effect and `squares` for the others. `None` if no length is
-/// enough.
+/// % interval in four of five records, with `square` for this effect and `squares` for the others. No term is taken for
+/// absent, because a longer record shows some that this one does not. `None` if no length is enough.
+/// `cargo xtask study limits --promises` counts how many lengths come true.
 ///
 /// The standard errors are those of independent octaves of `N/m − 1` clusters each. This is a
 /// compromise: overlapping estimates gain information, and their correlation takes some of it away.
@@ -32,8 +33,8 @@ pub(crate) fn record_length_s(
 ) -> Option<Real> {
     let mut assumed = *squares;
     assumed.put(i, square);
-    let with = free.with(i);
     let count = model.terms().len();
+    let with = (0..count).fold(free.with(i), |set, j| set.with(j));
     let mut equations = NormalEquations::EMPTY;
     // The equations are `samples · Σ q/2m − Σ q/2`, where q is an octave's share. Each doubling adds an
     // octave.
@@ -65,7 +66,7 @@ pub(crate) fn record_length_s(
         });
         set.ok()?;
         let variance = equations.variance(i, &with);
-        if variance.is_some_and(|variance| square * square > real(CHI_SQUARED_95) * variance) {
+        if variance.is_some_and(|variance| square * square > real(SHOWN_IN_80) * variance) {
             return Some(samples * interval_s);
         }
         samples *= 2.0;

@@ -5,16 +5,19 @@ use super::{
     estimate::Scale,
     memory::consecutive,
     tableau::Tableau,
-    terms::{TERMS, Units, is_positive},
+    terms::{TERMS, Units},
 };
 use crate::{
     curve::{Curve, clusters},
-    limits::CHI_SQUARED_95,
+    limits::SHOWN_IN_80,
     numerics::real::{Real, real, single},
 };
 
 /// The length of the longest record that is considered, in samples: that of the longest octave.
 const LONGEST: f32 = (1_u32 << 30) as f32;
+
+/// All terms, as a set.
+const ALL: u8 = (1 << TERMS) - 1;
 
 /// The sums over octaves of the products of terms.
 type Products = [[f32; TERMS]; TERMS];
@@ -24,14 +27,14 @@ impl Fit {
     /// [upper end](crate::Coefficient::upper) on the curve that was fitted. The present length is doubled as often as
     /// needed. `None` if no length is enough, or if the curve cannot distinguish the term from the others.
     ///
-    /// The rule is that of [`State::NotObservable`](crate::fit::State::NotObservable) of the general fit. It is apart from
+    /// Four of five such records measure it. The rule is that of [`State::NotObservable`](crate::fit::State::NotObservable) of the general fit. It is apart from
     /// the fit, so that a device that does not ask pays nothing.
     pub fn measured_after_s<const K: usize>(&self, curve: &Curve<K>, place: usize) -> Option<Real> {
         let points = consecutive(curve.points());
         let (last, middle) = (points.last()?, points.get(points.len() / 2)?);
         let units = Units::new(points.len());
         let scale = Scale::new(middle.variance, curve.interval_s(), units);
-        let (mut squares, mut others) = ([0.0; TERMS], 0_u8);
+        let mut squares = [0.0; TERMS];
         for (term, (square, found)) in (0..TERMS).zip(squares.iter_mut().zip(&self.coefficients)) {
             let size = if term == place {
                 found.upper
@@ -40,10 +43,9 @@ impl Fit {
             };
             let root = single(size / scale.root(term));
             *square = root * root;
-            if term != place && is_positive(root) {
-                others |= 1_u8.wrapping_shl(term as u32);
-            }
         }
+        // No term is taken for absent, because a longer record shows some that this one does not.
+        let others = ALL & !1_u8.wrapping_shl(place as u32);
         let own = squares
             .get(place)
             .copied()
@@ -76,7 +78,7 @@ impl Fit {
             });
             tableau.release(others);
             let variance = tableau.variance(place);
-            if variance.is_some_and(|variance| own * own > CHI_SQUARED_95 as f32 * variance) {
+            if variance.is_some_and(|variance| own * own > SHOWN_IN_80 as f32 * variance) {
                 return Some(real(samples) * curve.interval_s());
             }
             samples *= 2.0;

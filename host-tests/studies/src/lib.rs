@@ -13,6 +13,7 @@ pub mod faults;
 pub mod five_terms;
 pub mod hidden_effect;
 pub mod lag;
+pub mod limits;
 pub mod lines;
 pub mod long;
 pub mod losses;

@@ -165,7 +165,7 @@ pub fn limited(factor: f64, records: u64) -> Vec<Limited> {
 pub(super) const LIMIT: f64 = 6.6;
 
 /// The density of Gauss–Markov noise with a root mean square of one, as a variance, at `x` periods per sample.
-fn lorentzian(correlation_time_s: f64) -> impl Fn(f64) -> f64 {
+pub(super) fn lorentzian(correlation_time_s: f64) -> impl Fn(f64) -> f64 {
     let pole = (-1.0 / (RATE_HZ * correlation_time_s)).exp();
     move |x| (1.0 - pole * pole) / (1.0 - 2.0 * pole * (2.0 * PI * x).cos() + pole * pole)
 }

@@ -72,11 +72,11 @@ fn the_record_length_is_the_shortest_doubling_that_measures_the_effect() {
             real(samples),
         );
         squares[i] = square;
-        let with = free | 1 << i;
+        let with = 0b1_1111;
         let lengths = (1..30).map(|k| samples << k).take_while(|&n| n <= 1 << 30);
         let ratio = |n: u64| {
             let variance = variance(i, &squares, with, &model, n);
-            square * square / (3.841_459 * variance)
+            square * square / (7.848_879 * variance)
         };
         // Rounding decides where the two are alike.
         if lengths.clone().any(|n| (ratio(n) - 1.0).abs() < 0.01) {

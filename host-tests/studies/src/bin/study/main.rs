@@ -11,6 +11,7 @@ mod export;
 mod faults;
 mod five_terms;
 mod hidden_effect;
+mod limits;
 mod lines;
 mod long;
 mod losses;
@@ -126,6 +127,22 @@ enum Study {
         /// Multiply the limits
         #[arg(long, default_value_t = 2.0)]
         factor: f64,
+    },
+    /// Count how often the five terms are called adequate and limits pass beside slow noise, and how many promised lengths of
+    /// records come true
+    Limits {
+        /// Number of records per kind
+        #[arg(long, default_value_t = 300)]
+        records: u64,
+        /// The first seed
+        #[arg(long, default_value_t = 0)]
+        seed: u64,
+        /// The limits, as multiples of the true coefficients
+        #[arg(long, default_value_t = 0.9)]
+        factor: f64,
+        /// Follow up promised lengths only
+        #[arg(long)]
+        promises: bool,
     },
     /// Count how many records tell an effect of the size that the whole periodogram would show, and of larger ones
     Smallest {
@@ -395,6 +412,18 @@ fn main() -> Result<()> {
             limits,
             factor,
         } => slow::print(records, limits, factor),
+        Study::Limits {
+            records,
+            seed,
+            promises: true,
+            ..
+        } => limits::print_promises(records, seed),
+        Study::Limits {
+            records,
+            seed,
+            factor,
+            ..
+        } => limits::print(records, seed, factor),
         Study::Smallest { records } => smallest::print(records),
         Study::Strange { records } => strange::print(records),
         Study::Detection {

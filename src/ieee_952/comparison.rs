@@ -4,7 +4,7 @@ use super::{
     Fit,
     estimate::{NAMES, Scale},
     memory::{Memory, consecutive},
-    rounds::{CONVERGED, USUAL, iterate},
+    rounds::{CONVERGED, Question, USUAL, iterate},
     rows::Rows,
     tableau::Tableau,
     terms::{TERMS, sqrt},
@@ -32,7 +32,8 @@ pub(crate) fn place(name: &str) -> Option<usize> {
 ///
 /// The curve is fitted with the coefficient at the limit, with the covariance that the curve has there, and by the same
 /// covariance with the coefficient free. χ² falls by the square. If the coefficient is at the limit, the root is nearly
-/// normal with a variance of one (Wilks 1938), or nearer to zero where the others are at zero too (Chernoff 1954).
+/// normal with a variance of one (Wilks 1938), or nearer to zero where the others are at zero too (Chernoff 1954). Beyond eight
+/// standard errors it is rough, because no plan asks for as much.
 ///
 /// `None` if neither the covariance at the limit nor one at a lower limit that is out of the question is positive definite.
 #[inline(never)]
@@ -85,7 +86,8 @@ fn compared<const K: usize>(
     }
     let set = 1_u8.wrapping_shl(term as u32);
     let mut tableau = Tableau::EMPTY;
-    iterate(rows, &mut tableau, start, CONVERGED, [USUAL, set])?;
+    let question = Question::Limit(term, square);
+    iterate(rows, &mut tableau, start, CONVERGED, [USUAL, set], question)?;
     let (fall, is_above) = tableau.fall(term, square);
     let root = sqrt(fall);
     Some(if is_above { root } else { -root })

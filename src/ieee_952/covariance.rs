@@ -2,9 +2,11 @@
 
 use super::{
     row::Row,
-    table::{DISTANCES, END_STEP_BITS, FALL, STEP_BITS, TABLE},
+    table::{DISTANCES, END_STEP_BITS, PAIRS, STEP_BITS, TABLE},
     terms::{TERMS, power},
 };
+
+use core::num::Wrapping;
 
 /// The value of one of a term's shares of an octave.
 pub(super) const SHARE_BITS: i32 = -15;
@@ -31,47 +33,15 @@ pub(super) fn covariance(shorter: &Row, longer: &Row, j: usize, distance: usize)
     } else {
         j.min(2)
     };
-    let Some(mut entries) = TABLE
-        .get(row)
-        .and_then(|row| row.get(near))
-        .map(|all| &all[..])
-    else {
+    let Some([common, at_ends]) = TABLE.get(row).and_then(|row| row.get(near)) else {
         return 0.0;
     };
-    let mut falls = &FALL[..];
-    let (mut sum, mut ends) = (0_i32, 0_i32);
-    for (a, &own) in (0..TERMS).zip(&shorter.shares).take(TERMS - 1) {
-        let later = TERMS.wrapping_sub(a);
-        let (Some((its, rest)), Some((fall, next))) = (
-            entries.split_at_checked(later),
-            falls.split_at_checked(later),
-        ) else {
-            break;
-        };
-        (entries, falls) = (rest, next);
-        if own == 0 {
-            continue;
-        }
-        let others = longer.shares.get(a..).unwrap_or_default();
-        let (mut its_sum, mut its_ends) = (0_i32, 0_i32);
-        for ((&[t0, t1], &fall), &other) in its.iter().zip(fall).zip(others) {
-            if other == 0 {
-                continue;
-            }
-            let shift = (beyond as u32).wrapping_mul(fall.into()).min(31);
-            let other = u32::from(other).wrapping_shr(shift) as i32;
-            its_sum = its_sum.wrapping_add(other.wrapping_mul(t0.into()));
-            its_ends = its_ends.wrapping_add(other.wrapping_mul(t1.into()));
-        }
-        // Shares are at most 2^15 and add to one, and the table is below 2^15, so that all sums stay below 2^31.
-        let of = |its: i32| i32::from(own).wrapping_mul(its.wrapping_add(1 << 14) >> 15);
-        sum = sum.wrapping_add(of(its_sum));
-        ends = ends.wrapping_add(of(its_ends));
-    }
-    let mut all = sum as f32 * power(SUM_BITS);
+    let fallen = Fallen::new(&longer.shares, beyond);
+    let mut all = total(common, &shorter.shares, &fallen) as f32 * power(SUM_BITS);
     if longer.ends > FEW_ENDS {
         let step = END_STEP_BITS.get(near).copied().unwrap_or(0);
-        let cost = ends as f32 * power(step.wrapping_add(SHARE_BITS)) * longer.ends;
+        let cost = total(at_ends, &shorter.shares, &fallen) as f32;
+        let cost = cost * power(step.wrapping_add(SHARE_BITS)) * longer.ends;
         // Where stretches are so short that pairs far apart have no room in them, these cannot cost more than there are of
         // them. If the distances count alike, a quarter of the square is left.
         all = if cost > 0.5 * all {
@@ -81,4 +51,62 @@ pub(super) fn covariance(shorter: &Row, longer: &Row, j: usize, distance: usize)
         };
     }
     all
+}
+
+/// The shares of the longer octave, fallen as far as those beside each term of the shorter one are beyond the table.
+struct Fallen {
+    beside_q: [i32; 5],
+    beside_n: [i32; 4],
+    beside_b: [i32; 3],
+    beside_k: [i32; 2],
+}
+
+impl Fallen {
+    #[inline(always)]
+    fn new(&[q, n, b, k, r]: &[u16; TERMS], beyond: usize) -> Self {
+        let fallen = |share: u16, powers: u32| {
+            let shift = (beyond as u32).wrapping_mul(powers).min(31);
+            u32::from(share).wrapping_shr(shift) as i32
+        };
+        Self {
+            beside_q: [q.into(), fallen(n, 1), fallen(b, 2), fallen(k, 3), r.into()],
+            beside_n: [fallen(n, 1), fallen(b, 2), fallen(k, 2), r.into()],
+            beside_b: [fallen(b, 1), fallen(k, 1), fallen(r, 1)],
+            beside_k: [k.into(), r.into()],
+        }
+    }
+}
+
+/// The sum of the entries of a table by the shares of both octaves.
+///
+/// It is written out, because what a loop looks up for each pair takes longer than the products. Shares are at most 2^15 and add
+/// to one, and the table is below 2^15, so that all sums stay below 2^31.
+#[inline(never)]
+fn total(table: &[i16; PAIRS], shares: &[u16; TERMS], fallen: &Fallen) -> i32 {
+    let &[qq, qn, qb, qk, qr, nn, nb, nk, nr, bb, bk, br, kk, kr] = table;
+    let &[own_q, own_n, own_b, own_k, _] = shares;
+    let [q, n, b, k, r] = &fallen.beside_q;
+    let of_q = times(qq, q) + times(qn, n) + times(qb, b) + times(qk, k) + times(qr, r);
+    let [n, b, k, r] = &fallen.beside_n;
+    let of_n = times(nn, n) + times(nb, b) + times(nk, k) + times(nr, r);
+    let [b, k, r] = &fallen.beside_b;
+    let of_b = times(bb, b) + times(bk, k) + times(br, r);
+    let [k, r] = &fallen.beside_k;
+    let of_k = times(kk, k) + times(kr, r);
+    let all = by_share(own_q, of_q)
+        + by_share(own_n, of_n)
+        + by_share(own_b, of_b)
+        + by_share(own_k, of_k);
+    all.0
+}
+
+#[inline(always)]
+fn times(entry: i16, share: &i32) -> Wrapping<i32> {
+    Wrapping(i32::from(entry)) * Wrapping(*share)
+}
+
+/// A sum, whose unit is a share, by the share of the other octave.
+#[inline(always)]
+fn by_share(own: u16, sum: Wrapping<i32>) -> Wrapping<i32> {
+    Wrapping(own.into()) * Wrapping((sum + Wrapping(1 << 14)).0 >> 15)
 }

@@ -1,13 +1,57 @@
 //! Rounds of covariance and solution.
 
 use super::{
+    estimate::birge_ratio,
     rows::Rows,
     tableau::Tableau,
     terms::{TERMS, is_positive, positive},
 };
+use crate::limits::CHI_SQUARED_95;
 
-/// The rounds of covariance and solution.
-const ROUNDS: u8 = 8;
+/// The most rounds of covariance and solution. Of curves that the five terms explain, a twentieth has not converged by then,
+/// and hardly differs.
+const ROUNDS: u8 = 5;
+
+/// A curve whose χ² divided by this is still not explained by chance is not explained at all.
+const BEYOND_CHANCE: f32 = 2.0;
+
+/// The fall of χ² beyond which a limit is too far from the curve for any plan: eight standard errors.
+const FAR: f32 = 64.0;
+
+/// The falls of χ², as multiples of the one that is significant, below and above which a term is clearly absent or there.
+const ABSENT: f32 = 0.4;
+const THERE: f32 = 3.0;
+
+/// What rounds are to tell. They end once it is clear.
+#[derive(Clone, Copy)]
+pub(super) enum Question {
+    /// Which coefficients explain the curve, or that none do.
+    Fit,
+    /// How far a term is from this square, which is held.
+    Limit(usize, f32),
+    /// Whether a term, which is held at zero, is there.
+    Zero(usize),
+}
+
+impl Question {
+    /// Whether the equations of a round, whose solution lets the squared residuals fall by `fall`, leave no doubt.
+    #[inline(never)]
+    fn is_clear<const K: usize>(self, rows: &Rows<'_, K>, tableau: &Tableau, fall: f32) -> bool {
+        match self {
+            Self::Fit => {
+                let free = tableau.free().count_ones() as usize;
+                let degrees = rows.rows.len().saturating_sub(free);
+                1.0 < birge_ratio((rows.squared() - fall) / BEYOND_CHANCE, degrees)
+            }
+            Self::Limit(term, square) => FAR < tableau.fall(term, square).0,
+            Self::Zero(term) => {
+                let mut free = *tableau;
+                let fall = free.solve(0, 0) / CHI_SQUARED_95 as f32;
+                fall < ABSENT || (free.has(term) && THERE < fall)
+            }
+        }
+    }
+}
 
 /// The terms that most records have, which the solution tries first: quantization, white noise and flicker noise.
 pub(super) const USUAL: u8 = 0b111;
@@ -25,7 +69,7 @@ pub(super) fn begin<const K: usize>(rows: &mut Rows<'_, K>, tableau: &mut Tablea
 }
 
 /// Alternates between the covariance at a model and the solution with it, until the relative change of the model is smaller
-/// than `converged`. The terms of `held` stay at zero, and those of `guess` are tried first. The weights are those of the last round. `None` if the covariance is not positive definite, or if a
+/// than `converged` or the question is answered. The terms of `held` stay at zero, and those of `guess` are tried first. The weights are those of the last round. `None` if the covariance is not positive definite, or if a
 /// solution has no term.
 ///
 /// The changes of rounds that swing to and fro, or that creep, have a ratio, and the next round starts where it leads (Aitken
@@ -37,6 +81,7 @@ pub(super) fn iterate<const K: usize>(
     start: [f32; TERMS],
     converged: f32,
     [guess, held]: [u8; 2],
+    question: Question,
 ) -> Option<()> {
     let (mut assumed, mut stride) = (start, 1.0);
     for round in 0..ROUNDS {
@@ -48,7 +93,10 @@ pub(super) fn iterate<const K: usize>(
             return None;
         }
         rows.set_equations(None, tableau);
-        tableau.solve(guess, held);
+        let fall = tableau.solve(guess, held);
+        if round > 0 && question.is_clear(rows, tableau, fall) {
+            break;
+        }
         let mut squares = tableau.squares();
         if let Some(square) = squares.get_mut(rows.held.0) {
             *square += rows.held.1;
@@ -90,7 +138,14 @@ pub(super) fn solve<const K: usize>(
     tableau: &mut Tableau,
     squares: &mut [f32; TERMS],
 ) -> Option<f32> {
-    iterate(rows, tableau, *squares, CONVERGED, [USUAL, 0])?;
+    iterate(
+        rows,
+        tableau,
+        *squares,
+        CONVERGED,
+        [USUAL, 0],
+        Question::Fit,
+    )?;
     *squares = tableau.squares();
     let (gradient, residuals) = rows.residuals(squares);
     let fall = tableau.refine(squares, &gradient);

@@ -239,6 +239,11 @@ impl<'a, const K: usize> Rows<'a, K> {
         sum as f32 * power(bits) * scale(a) * scale(b)
     }
 
+    /// The sum of squares of the whitened curve.
+    pub(super) fn squared(&self) -> f32 {
+        self.product(TERMS, TERMS)
+    }
+
     /// Whitens the columns of all terms and of the curve, and sets the normal equations.
     #[inline(never)]
     pub(super) fn set_equations(&mut self, more: Option<(usize, f32)>, tableau: &mut Tableau) {

@@ -94,9 +94,11 @@ fn the_statistic_is_that_of_a_slow_computation() {
                 let limit = factor * libm::sqrt(SQUARES[place]);
                 let found = double(tested(&curve, place, limit).unwrap());
                 let expected = expected(&curve, place, limit);
-                // The rounds end when the model changes by less than 0.3 %.
+                // The rounds end when the model changes by less than 0.3 %, or at the second one beyond eight standard
+                // errors.
+                let share = if expected.abs() < 8.0 { 0.02 } else { 0.1 };
                 assert!(
-                    (found - expected).abs() < 0.03 + 0.02 * expected.abs(),
+                    (found - expected).abs() < 0.03 + share * expected.abs(),
                     "{place}, {factor} times: {found}, not {expected}"
                 );
                 signs[usize::from(found > 0.0)] += 1;

@@ -28,6 +28,7 @@ pub mod peers;
 mod periodogram;
 pub mod precision;
 pub mod resources;
+pub mod rounding;
 pub mod said;
 pub mod self_test;
 pub mod slow;

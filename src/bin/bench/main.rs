@@ -215,7 +215,7 @@ mod image {
             instructions
         );
         defmt::info!("stack_of_five_terms_{=usize} {=usize}", OCTAVES, stack);
-        let [costliest, _] = varied::COSTLIEST;
+        let [costliest, _] = varied::costliest(OCTAVES);
         let Some(worst) = varied::five_terms::<OCTAVES>(clock, costliest) else {
             return false;
         };
@@ -256,7 +256,7 @@ mod image {
             instructions
         );
         defmt::info!("stack_of_look_{=usize} {=usize}", OCTAVES, stack);
-        let [_, costliest] = varied::COSTLIEST;
+        let [_, costliest] = varied::costliest(OCTAVES);
         let Some(worst) = varied::of_look::<OCTAVES>(clock, costliest) else {
             return false;
         };

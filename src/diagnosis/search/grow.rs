@@ -75,11 +75,8 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
             }
         }
         for effect in effects.iter().copied().filter(|effect| is_plain(*effect)) {
-            // White noise that comes from behind a filter of all noise, such as rounding, has no other name.
-            let is_behind = is_white(effect)
-                && hypothesis
-                    .filter
-                    .is_some_and(|filter| filter.effect.passes_all());
+            // White noise that enters behind a filter, such as rounding, has no other name.
+            let is_behind = is_white(effect) && hypothesis.filter.is_some();
             let known = self.model.terms().iter().filter(|_| !is_behind);
             let mut known = known.chain(&hypothesis.added);
             if !known.any(|term| term.effect.name() == effect.name()) {

@@ -23,6 +23,7 @@ mod pairs;
 mod paper;
 mod peers;
 mod precision;
+mod rounding;
 mod self_test;
 mod slow;
 mod smallest;
@@ -143,6 +144,15 @@ enum Study {
         /// Follow up promised lengths only
         #[arg(long)]
         promises: bool,
+    },
+    /// Count what is said of noise behind a digital filter that is rounded to whole counts
+    Rounding {
+        /// Number of records per size and filter
+        #[arg(long, default_value_t = 60)]
+        records: u64,
+        /// The first seed
+        #[arg(long, default_value_t = 0)]
+        seed: u64,
     },
     /// Count how many records tell an effect of the size that the whole periodogram would show, and of larger ones
     Smallest {
@@ -424,6 +434,7 @@ fn main() -> Result<()> {
             factor,
             ..
         } => limits::print(records, seed, factor),
+        Study::Rounding { records, seed } => rounding::print(records, seed),
         Study::Smallest { records } => smallest::print(records),
         Study::Strange { records } => strange::print(records),
         Study::Detection {

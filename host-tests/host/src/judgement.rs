@@ -57,8 +57,10 @@ impl Judgement {
             effect.replaces().is_some_and(|other| other.name() == name)
         };
         let mut terms = model.terms().iter();
-        let at =
-            terms.position(|term| term.effect.name() == effect || replaces(term.effect, effect))?;
+        // White noise beside a filter enters behind it, and is not what the filter passes.
+        let at = terms
+            .position(|term| replaces(term.effect, effect))
+            .or_else(|| model.position(effect))?;
         fit.coefficients.get(at)
     }
 

@@ -12,6 +12,9 @@ use std::f64::consts::PI;
 /// exceeds it at a noise of two counts rms or less.
 const LEAST_PERCENT: f64 = 1.0;
 
+/// The smallest share of rounding in white noise behind a filter that is worth a note. Chosen by hand.
+const LEAST_SHARE: f64 = 0.3;
+
 /// A note on the share of rounding in an axis, or `None` if there is nothing to tell.
 ///
 /// Rounding to whole counts adds white noise of 1/12 count² to a noise of half a count rms or more
@@ -20,6 +23,10 @@ pub fn note(axis: &AxisCurve, fit: &Fit) -> Option<String> {
     let name = AngleRandomWalk.description().name;
     let mut coefficients = fit.coefficients.iter();
     let white = coefficients.find(|one| one.name == name && one.state == State::Measured)?;
+    let mut others = fit.coefficients.iter();
+    if others.any(|other| other.name != name && other.symbol == white.symbol) {
+        return behind_filter(axis, white);
+    }
     let without = without(white, axis.rate_per_count, axis.rate_hz);
     let percent = 100.0 * (white.value / without[0] - 1.0);
     if percent < LEAST_PERCENT || !percent.is_finite() {
@@ -31,6 +38,20 @@ pub fn note(axis: &AxisCurve, fit: &Fit) -> Option<String> {
         "rounding of the values raises angle random walk by {percent:.0} %: without it, it is {value} {unit}, \
          95 % interval {lower} … {upper}"
     ))
+}
+
+/// What rounding alone adds behind a filter, if that is some of the white noise there.
+fn behind_filter(axis: &AxisCurve, white: &Coefficient) -> Option<String> {
+    let rounding = axis.rate_per_count / (12.0 * axis.rate_hz).sqrt();
+    let (factor, unit) = words::customary(axis.unit, white.half_seconds);
+    (rounding > LEAST_SHARE * white.value).then(|| {
+        format!(
+            "rounding of the values to steps of {} {} adds {} {unit} of white noise behind the filter",
+            number(axis.rate_per_count),
+            axis.unit,
+            number(factor * rounding),
+        )
+    })
 }
 
 /// Value, lower and upper end of a white noise without the rounding to multiples of `step`.

@@ -10,7 +10,7 @@ use allanite::{
     comparison::Band,
     course::{Event, What},
     detection::Range,
-    effect::{Effect, MAX_PARAMETERS, Parameter, explanation},
+    effect::{Effect, Explanation, MAX_PARAMETERS, Parameter},
     fit::{Fit, State},
 };
 use allanite_log::unit::{Sensor, Unit};
@@ -52,6 +52,38 @@ pub fn list_of(names: Vec<String>) -> String {
 pub fn alternatives<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     let names: Vec<String> = names.into_iter().map(in_sentence).collect();
     names.join(" or ")
+}
+
+/// The name of white noise beside a filter that took the place of the gyro's own white noise: it entered behind the filter.
+pub const BEHIND_FILTER: &str = "white_noise_behind_the_filter";
+
+/// The explanation of an effect, or of [`BEHIND_FILTER`].
+pub fn explanation(name: &str) -> Option<Explanation> {
+    if name == BEHIND_FILTER {
+        return Some(Explanation {
+            what: "white noise that enters behind the filter: the filter leaves less than this at high frequency",
+            origin: "rounding of the values, an analogue-to-digital converter or a wire behind the filter",
+            check: "rounding to steps of q at a rate r adds q/√(12 r); log with a finer step: is there less of it?",
+        });
+    }
+    allanite::effect::explanation(name)
+}
+
+/// Whether an effect of a model stands beside one that takes its place.
+pub fn is_behind_filter(effect: &dyn Effect, model: &Model) -> bool {
+    let mut others = model
+        .terms()
+        .iter()
+        .filter_map(|term| term.effect.replaces());
+    others.any(|replaced| replaced.name() == effect.name())
+}
+
+/// The name of an effect in a model.
+pub fn name_in(effect: &'static dyn Effect, model: &Model) -> &'static str {
+    match is_behind_filter(effect, model) {
+        true => BEHIND_FILTER,
+        false => effect.name(),
+    }
 }
 
 /// The noun with which the explanation of an effect begins.
@@ -145,9 +177,17 @@ fn short(value: f64) -> String {
     }
 }
 
-/// A coefficient with its value and interval: `angle random walk 1.95 °/√h (1.93 … 1.97)`.
-pub fn coefficient(effect: &dyn Effect, coefficient: &Coefficient, unit: Unit) -> String {
-    let name = of_sensor(effect.coefficient(), unit);
+/// A coefficient of a model with its value and interval: `angle random walk 1.95 °/√h (1.93 … 1.97)`.
+pub fn coefficient(
+    effect: &'static dyn Effect,
+    model: &Model,
+    coefficient: &Coefficient,
+    unit: Unit,
+) -> String {
+    let name = match is_behind_filter(effect, model) {
+        true => plain(BEHIND_FILTER),
+        false => of_sensor(effect.coefficient(), unit),
+    };
     // Amplitudes are rates and keep the log's unit; customary units in hours are for drifts.
     let (factor, unit) = match effect.coefficient() {
         "amplitude" | "rms" => (1.0, units::unit(unit, coefficient.half_seconds)),

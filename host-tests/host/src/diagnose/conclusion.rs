@@ -6,12 +6,7 @@ use super::{
     words::{added_chi_squared, shown_p},
 };
 use crate::{known_filter, number::number, tried::per, verdict, words};
-use allanite::{
-    Coefficient, Term, covariate,
-    diagnosis::Verdict,
-    effect::{Explanation, explanation},
-    fit::State,
-};
+use allanite::{Coefficient, Term, covariate, diagnosis::Verdict, effect::Explanation, fit::State};
 
 /// The most lines of a conclusion, with the one that says what to do next.
 const MOST_LINES: usize = 5;
@@ -159,10 +154,11 @@ fn found(diagnosed: &Diagnosed) -> Vec<Found<'_>> {
         else {
             continue;
         };
+        let name = words::name_in(term.effect, &last.model);
         found.push(effect(
             diagnosed,
             axis,
-            (term, at),
+            (term, at, name),
             &last.fit.coefficients[at],
         ));
     }
@@ -172,10 +168,9 @@ fn found(diagnosed: &Diagnosed) -> Vec<Found<'_>> {
 fn effect<'a>(
     diagnosed: &Diagnosed,
     axis: &'a str,
-    (term, at): (&Term, usize),
+    (term, at, name): (&Term, usize, &'static str),
     coefficient: &Coefficient,
 ) -> Found<'a> {
-    let name = term.effect.name();
     let unit = diagnosed.axis.unit;
     let is_oscillation = term.effect.replaces().is_none();
     let frequency = term.effect.parameters().first();
@@ -218,7 +213,7 @@ fn effect<'a>(
         alternatives: ambiguous
             .next()
             .map_or(Vec::new(), |(_, others)| others.to_vec()),
-        explanation: explanation(name),
+        explanation: words::explanation(name),
     }
 }
 

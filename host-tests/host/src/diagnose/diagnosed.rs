@@ -307,27 +307,38 @@ impl Diagnosed {
     fn added_in<'a>(&'a self, step: &'a Step<OCTAVES, BINS>) -> impl Iterator<Item = &'a Term> {
         let asked = self.steps.first();
         step.model.terms().iter().filter(move |term| {
-            let asked = asked.map(|asked| asked.model.position(term.effect.name()));
-            asked.flatten().is_none()
+            let is_behind = |model| words::is_behind_filter(term.effect, model);
+            asked.is_none_or(|asked| {
+                asked.model.position(term.effect.name()).is_none()
+                    || (is_behind(&step.model) && !is_behind(&asked.model))
+            })
         })
     }
 
     /// Names of the covariate and the effects that were added.
     pub fn missing(&self) -> impl Iterator<Item = &'static str> {
-        let followed = self.steps.last().and_then(|last| last.covariate);
+        let last = self.steps.last();
+        let followed = last.and_then(|last| last.covariate);
         let covariate = followed.map(|_| covariate::NAME);
-        covariate
-            .into_iter()
-            .chain(self.added().map(|term| term.effect.name()))
+        let added = last.into_iter().flat_map(|last| {
+            let added = self.added_in(last);
+            added.map(|term| words::name_in(term.effect, &last.model))
+        });
+        covariate.into_iter().chain(added)
     }
 
     /// The addition of each step that has ambiguous alternatives, with the names of these alternatives:
     /// they explain the curve about as well.
     pub fn ambiguous(&self) -> impl Iterator<Item = (&'static str, &[&'static str])> {
-        self.steps.iter().filter_map(|step| {
+        let last = self.steps.last();
+        self.steps.iter().filter_map(move |step| {
             let others = step.ambiguous.as_slice();
             let added = step.added.as_ref().filter(|_| !others.is_empty())?;
-            Some((added_name(added), others))
+            let name = match (added, last) {
+                (Addition::Effect(term), Some(last)) => words::name_in(term.effect, &last.model),
+                _ => added_name(added),
+            };
+            Some((name, others))
         })
     }
 

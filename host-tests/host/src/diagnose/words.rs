@@ -13,7 +13,7 @@ use allanite::{
     Comparison, Term, covariate,
     detection::Range,
     diagnosis::{Addition, Candidate, FollowedCovariate, Step, Verdict},
-    effect::{Explanation, explanation},
+    effect::Explanation,
 };
 use allanite_log::{BINS, OCTAVES};
 
@@ -52,10 +52,11 @@ impl Finding {
         let effect = added.effect;
         let place = |replaced: &str| format!("replaces {}", words::plain(replaced));
         let change = effect.replaces().map(|replaced| place(replaced.name()));
+        let name = words::name_in(effect, &after.model);
         Self {
-            name: words::plain(effect.name()),
+            name: words::plain(name),
             found: found(after, effect.name(), diagnosed),
-            explanation: explanation(effect.name()),
+            explanation: words::explanation(name),
             change: change.map(|change| ("in the model", change)),
             ambiguous: None,
         }
@@ -125,7 +126,7 @@ pub fn found(step: &Step<OCTAVES, BINS>, effect: &str, diagnosed: &Diagnosed) ->
         found += "; ";
     }
     let coefficient = step.fit.coefficients.get(at)?;
-    found += &words::coefficient(term.effect, coefficient, diagnosed.axis.unit);
+    found += &words::coefficient(term.effect, &step.model, coefficient, diagnosed.axis.unit);
     Some(found + ", 95 % intervals")
 }
 

@@ -11,6 +11,7 @@ use crate::{
 };
 use allanite::{
     Coefficient,
+    effect::{AngleRandomWalk, Effect as _},
     fit::{Fit, State},
 };
 use allanite_log::unit::Unit;
@@ -72,7 +73,7 @@ pub fn table(fit: &Fit, unit: Unit) -> String {
     table.load_style(NOTHING);
     table.set_header(["effect", "", "value", "95 % interval", "unit", "customary"]);
     for coefficient in &fit.coefficients {
-        table.add_row(row(coefficient, unit));
+        table.add_row(row(coefficient, fit, unit));
     }
     for (i, column) in table.column_iter_mut().enumerate() {
         column.set_padding((0, if i == 0 { 1 } else { 2 }));
@@ -84,7 +85,7 @@ pub fn table(fit: &Fit, unit: Unit) -> String {
         let State::NotObservable { after_s } = coefficient.state else {
             return None;
         };
-        let name = words::of_sensor(coefficient.name, unit);
+        let name = name(coefficient, fit, unit);
         let (upper, unit) = (
             number(coefficient.upper),
             units::unit(unit, coefficient.half_seconds),
@@ -137,14 +138,26 @@ fn scaled_interval(coefficient: &Coefficient, factor: f64) -> String {
     }
 }
 
-fn row(coefficient: &Coefficient, unit: Unit) -> [String; 6] {
+/// The name of a coefficient. White noise beside another white noise, which a filter passes, enters behind the filter.
+fn name(coefficient: &Coefficient, fit: &Fit, unit: Unit) -> String {
+    let is_white = coefficient.name == AngleRandomWalk.description().name;
+    let mut others = fit.coefficients.iter();
+    let is_alike =
+        |other: &Coefficient| other.name != coefficient.name && other.symbol == coefficient.symbol;
+    match is_white && others.any(is_alike) {
+        true => words::plain(words::BEHIND_FILTER),
+        false => words::of_sensor(coefficient.name, unit),
+    }
+}
+
+fn row(coefficient: &Coefficient, fit: &Fit, unit: Unit) -> [String; 6] {
     let (_, customary_unit) = customary_unit(coefficient, unit);
     let customary = match coefficient.state {
         State::NotObservable { .. } => String::new(),
         _ => format!("{} {customary_unit}", customary(coefficient, unit)),
     };
     [
-        words::of_sensor(coefficient.name, unit),
+        name(coefficient, fit, unit),
         coefficient.symbol.into(),
         shown(coefficient, 1.0),
         scaled_interval(coefficient, 1.0),

@@ -104,3 +104,49 @@ fn few_rows_of_half_a_step_or_more_are_valid_wherever_their_mean_lies() {
         }
     }
 }
+
+/// White noise of 2.5 steps behind a Butterworth low pass of two poles at a tenth of the rate, rounded to hundredths. What
+/// rounding adds behind the filter is named so, with its size, and is no resonance or power law.
+#[test]
+fn rounding_behind_a_filter_is_white_noise_behind_the_filter() {
+    let mut random = Xoshiro256PlusPlus::seed_from_u64(54);
+    // The bilinear transform of 1/(s² + √2 s + 1).
+    let k = (std::f64::consts::PI * 0.1).tan();
+    let norm = 1.0 / (1.0 + std::f64::consts::SQRT_2 * k + k * k);
+    let gain = k * k * norm;
+    let [one, two] = [
+        2.0 * (k * k - 1.0) * norm,
+        (1.0 - std::f64::consts::SQRT_2 * k + k * k) * norm,
+    ];
+    let (mut inputs, mut outputs) = ([0.0; 2], [0.0; 2]);
+    let filtered: Vec<f64> = (0..1 << 16)
+        .map(|_| {
+            let input: f64 = StandardNormal.sample(&mut random);
+            let passed = gain * (input + 2.0 * inputs[0] + inputs[1]);
+            let output = passed - one * outputs[0] - two * outputs[1];
+            (inputs, outputs) = ([input, inputs[0]], [output, outputs[0]]);
+            output
+        })
+        .collect();
+    let square: f64 = filtered.iter().map(|value| value * value).sum();
+    let factor = 2.5 / (square / filtered.len() as f64).sqrt();
+    let mut text = String::from("gx\n");
+    for value in filtered {
+        writeln!(text, "{:.2}", 0.01 * (factor * value + 0.3).round()).unwrap();
+    }
+    let folder = TempDir::new().unwrap();
+    fs::write(folder.path().join("log.csv"), text).unwrap();
+    let arguments = ["diagnose", "log.csv", "--rate", "100", "--unit", "deg/s"];
+    let text = output(folder.path(), &arguments);
+    assert!(
+        text.contains("2. + white noise behind the filter: χ²") && !text.contains("3. + "),
+        "{text}"
+    );
+    let note = "rounding of the values to steps of 0.01000 deg/s adds 0.01732 °/√h of white noise behind the filter";
+    assert!(text.contains(note), "{text}");
+    let found = text
+        .split_once("\n  white noise behind the filter ")
+        .and_then(|(_, rest)| rest.split(' ').next()?.parse::<f64>().ok());
+    let found = found.unwrap_or_else(|| panic!("{text}"));
+    assert!((found / 0.01732 - 1.0).abs() < 0.15, "{found}");
+}

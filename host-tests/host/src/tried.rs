@@ -190,6 +190,20 @@ impl TriedCovariate {
         matches!(self.found, Found::Acts(..) | Found::ActsBehind(_))
     }
 
+    /// The largest slope on a column itself that is not excluded, where no dependence on it shows.
+    pub fn most(&self, column: &str) -> Option<f64> {
+        match &self.found {
+            Found::Nothing(slope, bound)
+                if self.column == column && matches!(self.form, Form::Itself) =>
+            {
+                let (lower, upper) = slope.interval();
+                let alone = lower.abs().max(upper.abs());
+                Some(bound.as_ref().map_or(alone, |bound| bound.most))
+            }
+            _ => None,
+        }
+    }
+
     /// The result in a sentence.
     pub fn words(&self, unit: Unit) -> String {
         let Self {

@@ -13,6 +13,7 @@ use allanite_host::{
     dependence::candidates::{Candidates, Form},
     diagnosis,
     simulate::{Preset, Random, Simulator},
+    tried::tried,
 };
 use allanite_log::{
     BINS, Evidence, OCTAVES, SpectrumSums,
@@ -81,6 +82,8 @@ pub enum Dependence {
     Lagged,
     /// At once, and on the square as well.
     Square,
+    /// At once, by a thirtieth to a third of the others.
+    Weak,
 }
 
 /// A simulated record.
@@ -115,6 +118,10 @@ fn simulated(
     };
     // Some times the white noise of one second, so that a change of a few kelvin stands out.
     let slope = between(2.0, 6.0) * base.angle_random_walk;
+    let slope = match dependence {
+        Dependence::Weak => slope * 0.3 * 0.1_f64.powf(between(0.0, 1.0)),
+        _ => slope,
+    };
     let truth = Truth {
         course,
         slope: if dependence == Dependence::None {
@@ -218,6 +225,8 @@ pub struct Outcome {
     pub rate_of_change: bool,
     /// The effects that were named beside the temperature and kept.
     pub named: Vec<&'static str>,
+    /// The largest slope that is said not to be excluded, where no dependence is told.
+    pub most: Option<f64>,
 }
 
 /// Diagnoses one record as the command line does.
@@ -250,7 +259,11 @@ pub fn diagnose(
         _ => None,
     });
     let names = last.model.terms().iter().map(|term| term.effect.name());
+    let most = tried(curve, &candidates, &last)
+        .iter()
+        .find_map(|tried| tried.most(COLUMN));
     Outcome {
+        most,
         truth: record.truth,
         follows: slopes
             .iter()
@@ -284,6 +297,10 @@ pub struct Tally {
     pub lag_inside: usize,
     /// Those in which an effect is named that the record does not have.
     pub wrong: usize,
+    /// Those without a dependence that say how large one may be, and those of them in which the true one is no larger.
+    pub bounded: usize,
+    /// See `bounded`.
+    pub bound_holds: usize,
 }
 
 /// Counts over the records of one case. The thermometer has steps of so many kelvin, or is drawn.
@@ -316,6 +333,8 @@ impl Tally {
             slope_inside: usize::from(outcome.follows.first().is_some_and(slope_inside)),
             lag_inside: usize::from(outcome.lag.is_some_and(lag_inside)),
             wrong: usize::from(!outcome.named.is_empty()),
+            bounded: usize::from(outcome.most.is_some()),
+            bound_holds: usize::from(outcome.most.is_some_and(|most| truth.slope <= most)),
         }
     }
 
@@ -329,6 +348,8 @@ impl Tally {
             slope_inside: self.slope_inside + other.slope_inside,
             lag_inside: self.lag_inside + other.lag_inside,
             wrong: self.wrong + other.wrong,
+            bounded: self.bounded + other.bounded,
+            bound_holds: self.bound_holds + other.bound_holds,
         }
     }
 }

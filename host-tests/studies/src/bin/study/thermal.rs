@@ -8,7 +8,7 @@ use allanite_studies::{
 
 fn print_heading(first: &str) {
     println!(
-        "{first:<7} {:<10} {:<9} {:>6} {:>7} {:>7} {:>7} {:>13} {:>11} {:>13}",
+        "{first:<7} {:<10} {:<9} {:>6} {:>7} {:>7} {:>7} {:>13} {:>11} {:>13} {:>8} {:>6}",
         "course",
         "follows",
         "found",
@@ -17,13 +17,15 @@ fn print_heading(first: &str) {
         "square",
         "slope inside",
         "lag inside",
-        "wrong effect"
+        "wrong effect",
+        "bounded",
+        "holds"
     );
 }
 
 fn print_line(first: &str, course: Course, dependence: Dependence, tally: &Tally) {
     println!(
-        "{first:<7} {:<10} {:<9} {:>6} {:>7} {:>7} {:>7} {:>13} {:>11} {:>13}",
+        "{first:<7} {:<10} {:<9} {:>6} {:>7} {:>7} {:>7} {:>13} {:>11} {:>13} {:>8} {:>6}",
         format!("{course:?}"),
         format!("{dependence:?}"),
         tally.found,
@@ -32,7 +34,9 @@ fn print_line(first: &str, course: Course, dependence: Dependence, tally: &Tally
         tally.square,
         tally.slope_inside,
         tally.lag_inside,
-        tally.wrong
+        tally.wrong,
+        tally.bounded,
+        tally.bound_holds
     );
 }
 
@@ -64,7 +68,12 @@ pub(crate) fn print_steps(records: u64) {
     );
     print_heading("step, K");
     let courses = [Course::WarmUp, Course::SlowCycle, Course::Ramp];
-    for dependence in [Dependence::AtOnce, Dependence::Lagged, Dependence::None] {
+    for dependence in [
+        Dependence::AtOnce,
+        Dependence::Lagged,
+        Dependence::Weak,
+        Dependence::None,
+    ] {
         for step in [0.01, 0.1, 0.5, 1.0] {
             for course in courses {
                 let tally = lag::study(Preset::Mems, course, dependence, Some(step), records);

@@ -33,6 +33,7 @@ mod comparison;
 mod covariance;
 mod estimate;
 mod factor;
+mod goodness;
 mod limits;
 mod memory;
 mod paper;
@@ -159,14 +160,14 @@ pub(crate) fn fit_curve<const K: usize>(curve: &Curve<K>) -> Result<Fit, Error> 
     };
     let mut deviance = rows.deviance(&squares);
     let mut tolerance = 0.0;
-    if estimate::judged(chi_squared, deviance, degrees(&tableau)).1 > 1.0 {
+    if goodness::judged(chi_squared, deviance, degrees(&tableau)).1 > 1.0 {
         tolerance = real(TOLERANCE);
         rows.tolerance = TOLERANCE * TOLERANCE;
         chi_squared = solve(&mut rows, &mut tableau, &mut squares).ok_or(Error::Singular)?;
         deviance = rows.deviance(&squares);
     }
     let degrees_of_freedom = degrees(&tableau);
-    let (chi_squared, birge_ratio) = estimate::judged(chi_squared, deviance, degrees_of_freedom);
+    let (chi_squared, birge_ratio) = goodness::judged(chi_squared, deviance, degrees_of_freedom);
     let scale = estimate::Scale::new(reference, curve.interval_s(), rows.units);
     Ok(Fit {
         chi_squared: real(chi_squared),

@@ -1,7 +1,7 @@
 //! Rounds of covariance and solution.
 
 use super::{
-    estimate::birge_ratio,
+    goodness::birge_ratio,
     rows::Rows,
     tableau::Tableau,
     terms::{TERMS, is_positive, positive},

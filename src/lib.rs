@@ -109,7 +109,7 @@
 //! | a sample into an accumulator, any number of octaves | 144 instructions |
 //! | RAM of an accumulator of 24 octaves | 2480 bytes |
 //! | flash of accumulator, curve and the fit of the five terms alone | 14 000 bytes |
-//! | that fit, of 20 octaves | 1.1 million instructions, 3 400 bytes of stack |
+//! | that fit, of 20 octaves | 0.74 million instructions, 3 400 bytes of stack |
 //! | flash of accumulator, curve and fit | 44 300 bytes |
 //! | flash with the diagnosis and the whole catalogue | 131 700 bytes |
 //! | a fit of 20 octaves | 16 million instructions |

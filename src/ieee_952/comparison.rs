@@ -4,7 +4,7 @@ use super::{
     Fit,
     estimate::{NAMES, Scale},
     memory::{Memory, consecutive},
-    rounds::{CONVERGED, Question, USUAL, iterate},
+    rounds::{CONVERGED, IsClear, USUAL, is_far, iterate},
     rows::Rows,
     tableau::Tableau,
     terms::{TERMS, sqrt},
@@ -86,8 +86,8 @@ fn compared<const K: usize>(
     }
     let set = 1_u8.wrapping_shl(term as u32);
     let mut tableau = Tableau::EMPTY;
-    let question = Question::Limit(term, square);
-    iterate(rows, &mut tableau, start, CONVERGED, [USUAL, set], question)?;
+    let is_clear: IsClear<'_, K> = &|_, tableau, _| is_far(tableau, term, square);
+    iterate(rows, &mut tableau, start, CONVERGED, [USUAL, set], is_clear)?;
     let (fall, is_above) = tableau.fall(term, square);
     let root = sqrt(fall);
     Some(if is_above { root } else { -root })

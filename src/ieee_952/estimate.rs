@@ -1,7 +1,7 @@
 //! Coefficients with their intervals, bounds and tests against zero.
 
 use super::{
-    rounds::{Question, iterate},
+    rounds::{IsClear, is_certain, iterate},
     rows::Rows,
     tableau::Tableau,
     terms::{TERMS, Units, is_positive, positive, power, sqrt},
@@ -240,8 +240,8 @@ fn may_be_zero<const K: usize>(rows: &mut Rows<'_, K>, tableau: &mut Tableau, te
     tableau.hold(term);
     tableau.solve(0, held);
     let start = tableau.squares();
-    let question = Question::Zero(term);
-    if iterate(rows, tableau, start, ROUGHLY, [guess, held], question).is_none() {
+    let is_clear: IsClear<'_, K> = &|_, tableau, _| is_certain(tableau, term);
+    if iterate(rows, tableau, start, ROUGHLY, [guess, held], is_clear).is_none() {
         return false;
     }
     let fall = tableau.solve(0, 0);

@@ -22,35 +22,28 @@ const FAR: f32 = 64.0;
 const ABSENT: f32 = 0.4;
 const THERE: f32 = 3.0;
 
-/// What rounds are to tell. They end once it is clear.
-#[derive(Clone, Copy)]
-pub(super) enum Question {
-    /// Which coefficients explain the curve, or that none do.
-    Fit,
-    /// How far a term is from this square, which is held.
-    Limit(usize, f32),
-    /// Whether a term, which is held at zero, is there.
-    Zero(usize),
+/// Whether the equations of a round, whose solution lets the squared residuals fall by this, leave no doubt about what the rounds
+/// are to tell. Each question is a function of its own, so that an image links those that it asks.
+pub(super) type IsClear<'a, const K: usize> = &'a dyn Fn(&Rows<'_, K>, &Tableau, f32) -> bool;
+
+/// Whether no coefficients explain the curve.
+#[inline(never)]
+fn is_hopeless<const K: usize>(rows: &Rows<'_, K>, tableau: &Tableau, fall: f32) -> bool {
+    let free = tableau.free().count_ones() as usize;
+    let degrees = rows.rows.len().saturating_sub(free);
+    1.0 < birge_ratio((rows.squared() - fall) / BEYOND_CHANCE, degrees)
 }
 
-impl Question {
-    /// Whether the equations of a round, whose solution lets the squared residuals fall by `fall`, leave no doubt.
-    #[inline(never)]
-    fn is_clear<const K: usize>(self, rows: &Rows<'_, K>, tableau: &Tableau, fall: f32) -> bool {
-        match self {
-            Self::Fit => {
-                let free = tableau.free().count_ones() as usize;
-                let degrees = rows.rows.len().saturating_sub(free);
-                1.0 < birge_ratio((rows.squared() - fall) / BEYOND_CHANCE, degrees)
-            }
-            Self::Limit(term, square) => FAR < tableau.fall(term, square).0,
-            Self::Zero(term) => {
-                let mut free = *tableau;
-                let fall = free.solve(0, 0) / CHI_SQUARED_95 as f32;
-                fall < ABSENT || (free.has(term) && THERE < fall)
-            }
-        }
-    }
+/// Whether the curve is far from this square of a term, which is held.
+pub(super) fn is_far(tableau: &Tableau, term: usize, square: f32) -> bool {
+    FAR < tableau.fall(term, square).0
+}
+
+/// Whether a term, which is held at zero, is clearly absent or there.
+pub(super) fn is_certain(tableau: &Tableau, term: usize) -> bool {
+    let mut free = *tableau;
+    let fall = free.solve(0, 0) / CHI_SQUARED_95 as f32;
+    fall < ABSENT || (free.has(term) && THERE < fall)
 }
 
 /// The terms that most records have, which the solution tries first: quantization, white noise and flicker noise.
@@ -69,7 +62,7 @@ pub(super) fn begin<const K: usize>(rows: &mut Rows<'_, K>, tableau: &mut Tablea
 }
 
 /// Alternates between the covariance at a model and the solution with it, until the relative change of the model is smaller
-/// than `converged` or the question is answered. The terms of `held` stay at zero, and those of `guess` are tried first. The weights are those of the last round. `None` if the covariance is not positive definite, or if a
+/// than `converged` or it is clear what the rounds are to tell. The terms of `held` stay at zero, and those of `guess` are tried first. The weights are those of the last round. `None` if the covariance is not positive definite, or if a
 /// solution has no term.
 ///
 /// The changes of rounds that swing to and fro, or that creep, have a ratio, and the next round starts where it leads (Aitken
@@ -81,7 +74,7 @@ pub(super) fn iterate<const K: usize>(
     start: [f32; TERMS],
     converged: f32,
     [guess, held]: [u8; 2],
-    question: Question,
+    is_clear: IsClear<'_, K>,
 ) -> Option<()> {
     let (mut assumed, mut stride) = (start, 1.0);
     for round in 0..ROUNDS {
@@ -94,7 +87,7 @@ pub(super) fn iterate<const K: usize>(
         }
         rows.set_equations(None, tableau);
         let fall = tableau.solve(guess, held);
-        if round > 0 && question.is_clear(rows, tableau, fall) {
+        if round > 0 && is_clear(rows, tableau, fall) {
             break;
         }
         let mut squares = tableau.squares();
@@ -138,14 +131,7 @@ pub(super) fn solve<const K: usize>(
     tableau: &mut Tableau,
     squares: &mut [f32; TERMS],
 ) -> Option<f32> {
-    iterate(
-        rows,
-        tableau,
-        *squares,
-        CONVERGED,
-        [USUAL, 0],
-        Question::Fit,
-    )?;
+    iterate(rows, tableau, *squares, CONVERGED, [USUAL, 0], &is_hopeless)?;
     *squares = tableau.squares();
     let (gradient, residuals) = rows.residuals(squares);
     let fall = tableau.refine(squares, &gradient);

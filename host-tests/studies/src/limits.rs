@@ -4,10 +4,9 @@
 use super::{
     OCTAVES, RATE_HZ, curve,
     measured::{Measured, Sums},
-    periodogram::Periodogram,
     quantum,
     said::Said,
-    slow::lorentzian,
+    slow::{ideal_size, lorentzian},
 };
 use allanite::{
     Coefficient, Curve, Model, Scale,
@@ -28,9 +27,6 @@ const LENGTHS: [usize; 3] = [1 << 15, 1 << 17, 1 << 18];
 /// The shortest correlation time in s, and the longest one as a share of the record.
 const SHORTEST_S: f64 = 0.1;
 const LONGEST: f64 = 0.02;
-
-/// The largest root mean square that is tried, relative to the white noise of a sample.
-const LARGEST: f64 = 30.0;
 
 /// What lies beside the five terms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -149,7 +145,7 @@ fn record(
     let other = lorentzian(slower_s);
     let is_two = kind == Kind::Two;
     let density = |x: f64| one(x) + if is_two { other(x) } else { 0.0 };
-    let rms = size(base, samples, &density, gain)?;
+    let rms = ideal_size(base, samples, &density, gain)?;
     let name = match kind {
         Kind::Telegraph => "random_telegraph",
         _ => "gauss_markov",
@@ -187,31 +183,6 @@ fn with_temperature(
         .collect();
     sums.push_slice(&counts);
     sums.measured(Scale::new(quantum, RATE_HZ).expect("positive"))
-}
-
-/// The root mean square of noise of this density whose ideal gain is `gain`.
-fn size(
-    base: Coefficients,
-    samples: usize,
-    density: &dyn Fn(f64) -> f64,
-    gain: f64,
-) -> Option<f64> {
-    let rows = Periodogram::new(base, samples, density);
-    let white = base.angle_random_walk * RATE_HZ.sqrt();
-    let ratio = |size: f64| rows.ratio((size * white).powi(2));
-    let (mut low, mut high) = (1e-6, LARGEST);
-    if ratio(high) < gain {
-        return None;
-    }
-    for _ in 0..40 {
-        let middle = (low * high).sqrt();
-        if ratio(middle) < gain {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    Some(high * white)
 }
 
 /// The promises for a term: how many records say what a longer one would show, and in how many it comes true.

@@ -173,19 +173,29 @@ pub(super) fn lorentzian(correlation_time_s: f64) -> impl Fn(f64) -> f64 {
 /// The largest size that is tried, relative to the white noise of a sample.
 const LARGEST: f64 = 30.0;
 
-/// The root mean square at which the likelihood ratio of the whole periodogram (Whittle 1953) is expected to be 6.6,
+/// The root mean square at which the likelihood ratio of the whole periodogram (Whittle 1953) is expected to be [`LIMIT`],
 /// beside the best fit of quantization, angle random walk, flicker and rate random walk. `None` if it never is.
 pub fn ideal_limit(base: Coefficients, samples: usize, correlation_time_s: f64) -> Option<f64> {
-    let rows = Periodogram::new(base, samples, &lorentzian(correlation_time_s));
+    ideal_size(base, samples, &lorentzian(correlation_time_s), LIMIT)
+}
+
+/// The same for noise of any density, and for a likelihood ratio of `gain`.
+pub(super) fn ideal_size(
+    base: Coefficients,
+    samples: usize,
+    density: &dyn Fn(f64) -> f64,
+    gain: f64,
+) -> Option<f64> {
+    let rows = Periodogram::new(base, samples, density);
     let (mut low, mut high) = (1e-6, LARGEST);
     let white = base.angle_random_walk * RATE_HZ.sqrt();
     let ratio = |size: f64| rows.ratio((size * white).powi(2));
-    if ratio(high) < LIMIT {
+    if ratio(high) < gain {
         return None;
     }
     for _ in 0..40 {
         let middle = (low * high).sqrt();
-        if ratio(middle) < LIMIT {
+        if ratio(middle) < gain {
             low = middle;
         } else {
             high = middle;

@@ -159,10 +159,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn coarse_rounding_behind_a_filter_is_named_white_noise() {
-        let tally = study(1.5, 2, 0, 4);
+    fn rounding_behind_a_filter_is_named_white_noise() {
+        let tally = study(2.5, 2, 0, 8);
+        let judged = tally.records - tally.refused;
+        assert!(judged > 2, "{tally:?}");
         assert_eq!(tally.wrong, 0, "{tally:?}");
-        assert!(tally.behind > 2, "{tally:?}");
-        assert!(tally.covered > 2, "{tally:?}");
+        assert!(tally.behind + 1 >= judged, "{tally:?}");
+        assert!(tally.covered + 1 >= judged, "{tally:?}");
     }
 }

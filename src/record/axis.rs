@@ -15,6 +15,7 @@ pub use sample::Sample;
 pub use spectra::SpectrumPart;
 
 use crate::{
+    list::numbered,
     record::course::Course,
     record::{
         integrity::{Integrity, InvalidLimit, Limits},
@@ -291,20 +292,51 @@ where
     }
 }
 
-impl<const OCTAVES: usize, const AXES: usize> Axes<OCTAVES, 0, (), (), AXES, (), Courses> {
+impl<const OCTAVES: usize, M, const AXES: usize, T> Axes<OCTAVES, 0, (), M, AXES, (), T>
+where
+    M: MomentPart,
+    T: CoursePart,
+{
     /// Adds counts of every axis, as many as the shortest slice has. The state afterwards is the same as if they were pushed one
     /// by one, but it is reached sooner.
     pub fn push_slices(&mut self, counts: [&[i32]; AXES]) {
+        self.push_slices_as(counts, |integrity, _, counts| integrity.push_slice(counts));
+    }
+
+    /// As [`push_slices`](Self::push_slices). `look` is shown the integrity of each axis after every 64 of its samples here, so that
+    /// it finds about when something began.
+    pub fn push_slices_looking(
+        &mut self,
+        counts: [&[i32]; AXES],
+        mut look: impl FnMut(usize, &Integrity),
+    ) {
+        self.push_slices_as(counts, |integrity, axis, counts| {
+            let (blocks, rest) = counts.as_chunks::<64>();
+            for block in blocks {
+                integrity.push_slice(block);
+                look(axis, integrity);
+            }
+            integrity.push_slice(rest);
+        });
+    }
+
+    /// Adds counts of every axis; `watch` adds them to the integrity.
+    #[inline(always)]
+    fn push_slices_as(
+        &mut self,
+        counts: [&[i32]; AXES],
+        mut watch: impl FnMut(&mut Integrity, usize, &[i32]),
+    ) {
         let length = counts.iter().map(|counts| counts.len()).min().unwrap_or(0);
         let counts = counts.map(|counts| counts.get(..length).unwrap_or(counts));
         for place in 0..length {
             let sample = counts.map(|counts| counts.get(place).copied().unwrap_or(0));
             self.kept.reads.push(sample);
         }
-        for (axis, counts) in self.kept.axes.iter_mut().zip(counts) {
-            axis.integrity.push_slice(counts);
-            axis.course.push_slice(counts);
-            axis.accumulator.push_slice(counts);
+        for (number, (axis, counts)) in numbered(self.kept.axes.iter_mut().zip(counts)) {
+            watch(&mut axis.integrity, number, counts);
+            axis.course.push_counts(counts);
+            axis.push_slice(counts);
         }
     }
 }
@@ -350,6 +382,34 @@ mod tests {
                 sliced.push_slices([x, if length == 7 { longer } else { y }, z]);
             }
             assert_eq!(sliced, singly, "{length}");
+        }
+    }
+
+    /// Counts of 8 bits take the narrow path, those of 30 bits the wide one, and larger ones none.
+    #[test]
+    fn fourth_moments_of_slices_are_those_of_samples() {
+        let mut random = 1_u32;
+        for bits in [8, 20, 30, 32] {
+            let counts: [i32; 5000] = core::array::from_fn(|_| {
+                random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                (random as i32) >> (32 - bits)
+            });
+            let mut singly = Axis::<14, 0, (), Moments>::new();
+            let mut sliced = Axis::<14, 0, (), Moments>::new();
+            let mut looks = 0;
+            for (number, some) in counts.chunks(700).enumerate() {
+                some.iter().for_each(|&count| singly.push(count));
+                match number % 2 {
+                    0 => sliced.push_slices([some]),
+                    _ => sliced.push_slices_looking([some], |_, _| looks += 1),
+                }
+                if number == 2 {
+                    singly.miss(3);
+                    sliced.miss(3);
+                }
+            }
+            assert_eq!(sliced, singly, "{bits}");
+            assert_eq!(looks, 3 * (700 / 64) + 100 / 64);
         }
     }
 }

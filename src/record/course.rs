@@ -189,10 +189,17 @@ impl<const COVARIATES: usize> Course<COVARIATES> {
 impl Course {
     /// Adds counts. The state afterwards is the same as if they were pushed one by one, but it is reached sooner.
     pub fn push_slice(&mut self, counts: &[i32]) {
+        self.push_counts(counts);
+    }
+}
+
+impl<const COVARIATES: usize> Course<COVARIATES> {
+    /// Adds counts beside covariates that are zero.
+    pub(crate) fn push_counts(&mut self, counts: &[i32]) {
         let mut rest = counts;
         while let Some((&first, after)) = rest.split_first() {
             // This one opens a block, or begins a stretch, if need be. The others are within the same.
-            self.push(first, []);
+            self.push(first, [0; COVARIATES]);
             let room = self.block_length().saturating_sub(self.filled) as usize;
             let (within, after) = after.split_at(room.min(after.len()));
             self.filled = self.filled.wrapping_add(within.len() as u32);

@@ -5,6 +5,7 @@
 
 pub(crate) mod ends;
 mod hole;
+mod slice;
 mod spread;
 pub(crate) mod steps;
 pub(crate) mod zero_runs;

@@ -56,6 +56,17 @@ impl<const OCTAVES: usize> FourthMoments<OCTAVES> {
         add_large(sum, difference.unsigned_abs());
     }
 
+    /// Adds the fourth powers of differences of an octave with these magnitudes, which are below 2^31.
+    #[inline(always)]
+    pub(crate) fn add_magnitudes(&mut self, octave: usize, magnitudes: &[u32]) {
+        let Some(sum) = self.sums.get_mut(octave) else {
+            return;
+        };
+        for some in magnitudes.chunks(TOGETHER) {
+            add_limbs(sum, fourth_powers(some));
+        }
+    }
+
     /// Adds the sums of another record.
     pub(crate) fn merge(&mut self, other: &Self) {
         for (own, other) in self.sums.iter_mut().zip(&other.sums) {
@@ -78,6 +89,39 @@ impl<const OCTAVES: usize> FourthMoments<OCTAVES> {
     pub(crate) fn sums_mut(&mut self) -> &mut [[u64; 3]; OCTAVES] {
         &mut self.sums
     }
+}
+
+/// The fourth powers of so many numbers below 2^31 add up to less than 2^132.
+const TOGETHER: usize = 128;
+
+/// The sum of the fourth powers of at most [`TOGETHER`] numbers below 2^31, lowest limb first.
+#[inline(never)]
+fn fourth_powers(magnitudes: &[u32]) -> [u64; 3] {
+    // A square below 2^62 is the sum of two digits to the base 2^31, whose products a vector holds. Sums of their upper and lower
+    // halves stay below 2^40.
+    const BITS: u32 = 31;
+    const DIGIT: u64 = (1 << BITS) - 1;
+    let mut sums = [0_u64; 6];
+    for &magnitude in magnitudes {
+        let square = u64::from(magnitude).wrapping_mul(magnitude.into());
+        let (low, high) = (square & DIGIT, square >> BITS);
+        let products = [
+            low.wrapping_mul(low),
+            low.wrapping_mul(high),
+            high.wrapping_mul(high),
+        ];
+        for (sums, product) in sums.as_chunks_mut::<2>().0.iter_mut().zip(products) {
+            sums[0] = sums[0].wrapping_add(product & 0xFFFF_FFFF);
+            sums[1] = sums[1].wrapping_add(product >> 32);
+        }
+    }
+    let [low, cross, high] = [[sums[0], sums[1]], [sums[2], sums[3]], [sums[4], sums[5]]]
+        .map(|[lower, upper]| u128::from(lower) + (u128::from(upper) << 32));
+    // low + 2^32 cross + 2^62 high; the last term has 132 bits.
+    let lower = low + (cross << (BITS + 1)) + ((high & ((1 << 62) - 1)) << (2 * BITS));
+    let upper = (high >> 62) << 60;
+    let total = (lower >> 64) + upper;
+    [lower as u64, total as u64, (total >> 64) as u64]
 }
 
 /// Adds the fourth power of a difference of any size.
@@ -148,6 +192,30 @@ mod tests {
             large.sums[0],
             [u64::MAX - (1 << 50) + 2, (6 << 32) - 1, high]
         );
+    }
+
+    #[test]
+    fn magnitudes_together_have_the_sum_of_each() {
+        let largest = (1 << 31) - 1;
+        let mut random = 1_u32;
+        for bits in [4, 15, 16, 17, 24, 31] {
+            let magnitudes: [u32; 300] = core::array::from_fn(|i| {
+                random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                if i % 7 == 0 {
+                    largest >> (31 - bits)
+                } else {
+                    random >> (32 - bits)
+                }
+            });
+            let mut singly = FourthMoments::<2>::NEW;
+            let mut together = FourthMoments::<2>::NEW;
+            for length in [0, 1, 128, 300] {
+                let some = &magnitudes[..length];
+                some.iter().for_each(|&one| singly.add(1, one.into()));
+                together.add_magnitudes(1, some);
+                assert_eq!(singly, together, "{bits} {length}");
+            }
+        }
     }
 
     #[test]

@@ -40,10 +40,21 @@ pub(crate) trait Observer {
     fn observe(&mut self, octave: usize, difference: i64);
 }
 
+/// Watches differences of which only the magnitudes are known where many are completed at once.
+pub(crate) trait MagnitudeObserver: Observer {
+    /// Differences of octave `octave` with these magnitudes, below 2^31, are complete.
+    fn observe_magnitudes(&mut self, octave: usize, magnitudes: &[u32]);
+}
+
 /// The observer that ignores every difference.
 impl Observer for () {
     #[inline(always)]
     fn observe(&mut self, _: usize, _: i64) {}
+}
+
+impl MagnitudeObserver for () {
+    #[inline(always)]
+    fn observe_magnitudes(&mut self, _: usize, _: &[u32]) {}
 }
 
 /// What is kept for one block length.

@@ -33,6 +33,9 @@ pub trait CourseSums<const COVARIATES: usize>: Clone + Debug + PartialEq + Eq {
     /// Adds one count, and one of every covariate.
     fn push(&mut self, count: i32, covariates: [i32; COVARIATES]);
 
+    /// Adds counts beside covariates that are zero.
+    fn push_counts(&mut self, counts: &[i32]);
+
     /// So many samples are not in the record, or it is not known how many if the number is 0.
     fn gap(&mut self, missing: u64);
 
@@ -51,6 +54,10 @@ impl<const COVARIATES: usize> CourseSums<COVARIATES> for Course<COVARIATES> {
     #[inline(always)]
     fn push(&mut self, count: i32, covariates: [i32; COVARIATES]) {
         self.push(count, covariates);
+    }
+
+    fn push_counts(&mut self, counts: &[i32]) {
+        self.push_counts(counts);
     }
 
     fn gap(&mut self, missing: u64) {
@@ -74,6 +81,9 @@ impl<const COVARIATES: usize> CourseSums<COVARIATES> for () {
 
     #[inline(always)]
     fn push(&mut self, _: i32, _: [i32; COVARIATES]) {}
+
+    #[inline(always)]
+    fn push_counts(&mut self, _: &[i32]) {}
 
     fn gap(&mut self, _: u64) {}
 

@@ -10,7 +10,7 @@ use super::{
 use crate::record::{
     cross_sums::CrossSums,
     integrity::{Integrity, InvalidLimit, Limits},
-    octave::{Accumulator, Observer, bridge::Filling},
+    octave::{Accumulator, MagnitudeObserver, Observer, bridge::Filling},
     reads::Reads,
 };
 
@@ -108,6 +108,36 @@ where
         for (cross, completed) in self.cross.iter_mut().zip(self.completed) {
             cross.add(octave, difference, completed.of(octave));
         }
+    }
+}
+
+/// The fourth moments that are updated together with the accumulator of an axis without covariates when it takes many samples.
+struct Fourths<'a, S, const OCTAVES: usize>(&'a mut S);
+
+impl<S: MomentSums<OCTAVES>, const OCTAVES: usize> Observer for Fourths<'_, S, OCTAVES> {
+    #[inline(always)]
+    fn observe(&mut self, octave: usize, difference: i64) {
+        self.0.add(octave, difference);
+    }
+}
+
+impl<S: MomentSums<OCTAVES>, const OCTAVES: usize> MagnitudeObserver for Fourths<'_, S, OCTAVES> {
+    #[inline(always)]
+    fn observe_magnitudes(&mut self, octave: usize, magnitudes: &[u32]) {
+        self.0.add_magnitudes(octave, magnitudes);
+    }
+}
+
+impl<const OCTAVES: usize, M, S, T> AxisSums<OCTAVES, 0, M, S, T>
+where
+    M: MomentPart,
+    S: SpectrumPart,
+    T: CoursePart,
+{
+    /// Adds counts to the sums of octaves.
+    pub(crate) fn push_slice(&mut self, counts: &[i32]) {
+        self.accumulator
+            .push_slice_observed(counts, &mut Fourths(&mut self.moments));
     }
 }
 

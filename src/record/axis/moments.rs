@@ -34,6 +34,9 @@ pub trait MomentSums<const OCTAVES: usize>: Clone + Debug + PartialEq + Eq {
     /// Adds a difference of an octave.
     fn add(&mut self, octave: usize, difference: i64);
 
+    /// Adds differences of an octave with these magnitudes, which are below 2^31.
+    fn add_magnitudes(&mut self, octave: usize, magnitudes: &[u32]);
+
     /// Adds the sums of another record.
     fn merge(&mut self, other: &Self);
 
@@ -52,6 +55,11 @@ impl<const OCTAVES: usize> MomentSums<OCTAVES> for FourthMoments<OCTAVES> {
     #[inline(always)]
     fn add(&mut self, octave: usize, difference: i64) {
         self.add(octave, difference);
+    }
+
+    #[inline(always)]
+    fn add_magnitudes(&mut self, octave: usize, magnitudes: &[u32]) {
+        self.add_magnitudes(octave, magnitudes);
     }
 
     fn merge(&mut self, other: &Self) {
@@ -74,6 +82,9 @@ impl<const OCTAVES: usize> MomentSums<OCTAVES> for () {
 
     #[inline(always)]
     fn add(&mut self, _: usize, _: i64) {}
+
+    #[inline(always)]
+    fn add_magnitudes(&mut self, _: usize, _: &[u32]) {}
 
     fn merge(&mut self, (): &Self) {}
 

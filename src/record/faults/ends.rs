@@ -25,6 +25,11 @@ impl End {
         self.value
     }
 
+    /// Whether there was a value.
+    pub(super) const fn has_begun(&self) -> bool {
+        self.begun
+    }
+
     /// Adds a value, which repeats the one before it or not. `steps` tells how many steps long a distance is.
     #[inline(always)]
     pub(super) fn push(&mut self, value: i64, repeats: bool, steps: impl Fn(u32) -> u8) {

@@ -32,13 +32,23 @@ impl Hole {
         if quarter > step { quarter } else { step }
     }
 
+    /// The distance from zero from which on a value is not beside the edge: twice that of the edge, or three steps beyond it. Before
+    /// there is an edge, any value may be it.
+    #[inline(always)]
+    pub(super) fn reach(&self, step: u32) -> u32 {
+        match self.edge {
+            0 => u32::MAX,
+            edge => edge
+                .saturating_mul(2)
+                .max(edge.saturating_add(step.saturating_mul(3))),
+        }
+    }
+
     /// Adds the distance of a value from zero.
     #[inline(always)]
     pub(super) fn push(&mut self, distance: u32, repeats: bool, steps: &Steps) {
         let step = steps.step();
-        // Beyond twice the edge, or beyond the edge and three steps, a value is not beside it.
-        let far = self.edge.saturating_mul(2);
-        if self.edge > 0 && distance >= far.max(self.edge.saturating_add(step.saturating_mul(3))) {
+        if self.edge > 0 && distance >= self.reach(step) {
             return;
         }
         if !repeats {

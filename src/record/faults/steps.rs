@@ -1,5 +1,7 @@
 //! Differences of neighbours in steps of the numbers: how many are zero, one, two and three steps long.
 
+use super::slice::CHUNK;
+
 /// The number of differences from which the usual one is learnt.
 const LEARNT: u16 = 256;
 
@@ -86,6 +88,59 @@ impl Steps {
             self.small = self.small.saturating_add(u64::from(is_small));
         }
         class
+    }
+
+    /// Adds the differences of a chunk, tells how many steps each of them has, and returns how many are zero. If one is shorter
+    /// than a step, or if it is not yet known which are usual, it does nothing and returns `None`.
+    pub(super) fn push_chunk(
+        &mut self,
+        differences: &[u32; CHUNK],
+        classes: &mut [u8; CHUNK],
+    ) -> Option<u32> {
+        let step = self.step;
+        if self.learnt < LEARNT || step == 0 || step > u32::MAX / 7 {
+            return None;
+        }
+        // The shortest differences of two, three and four steps: 2 d ≥ 3 s, 5 s and 7 s.
+        let [two, three, four] = [3, 5, 7].map(|halves| (step * halves).div_ceil(2));
+        let small = u32::try_from(self.usual >> 14).unwrap_or(u32::MAX);
+        let mut shorter = 0;
+        let mut numbers = [0_u32; 5];
+        for (class, &difference) in classes.iter_mut().zip(differences) {
+            let is = [
+                difference == 0,
+                difference >= two,
+                difference >= three,
+                difference >= four,
+                difference.wrapping_sub(1) < small,
+            ]
+            .map(u32::from);
+            shorter |= u32::from(difference.wrapping_sub(1) < step.wrapping_sub(1));
+            for (number, is) in numbers.iter_mut().zip(is) {
+                *number = number.wrapping_add(is);
+            }
+            let [zero, two, three, four, _] = is;
+            *class = (1 - zero + two + three + four) as u8;
+        }
+        if shorter > 0 {
+            return None;
+        }
+        let chunk = CHUNK as u32;
+        let [zero, two, three, four, small] = numbers;
+        let near = [
+            zero,
+            chunk.wrapping_sub(zero).wrapping_sub(two),
+            two.wrapping_sub(three),
+            three.wrapping_sub(four),
+        ];
+        self.pairs = self.pairs.saturating_add(chunk.into());
+        for (own, number) in self.near.iter_mut().zip(near) {
+            *own = own.saturating_add(number.into());
+        }
+        self.later = self.later.saturating_add(chunk.into());
+        self.zero = self.zero.saturating_add(zero.into());
+        self.small = self.small.saturating_add(small.into());
+        Some(zero)
     }
 
     /// Takes a shorter step. What was counted in one that is far too long is forgotten; rounding to counts makes steps

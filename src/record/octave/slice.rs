@@ -1,6 +1,6 @@
 //! The bulk path of the accumulator: it takes many counts at once and leads to the same state.
 
-use super::{Accumulator, FIRST, RING};
+use super::{Accumulator, FIRST, MagnitudeObserver, RING};
 
 /// The number of counts that are taken together.
 pub(super) const BATCH: usize = 128;
@@ -22,6 +22,16 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
     /// Adds counts. The state afterwards is the same as if they were pushed one by one, but it is
     /// reached sooner.
     pub fn push_slice(&mut self, counts: &[i32]) {
+        self.push_slice_observed(counts, &mut ());
+    }
+
+    /// Adds counts, and shows an observer every difference that they complete, in any order.
+    #[inline(always)]
+    pub(crate) fn push_slice_observed(
+        &mut self,
+        counts: &[i32],
+        observer: &mut impl MagnitudeObserver,
+    ) {
         let mut rest = counts;
         let mut is_far = false;
         while !rest.is_empty() {
@@ -30,13 +40,13 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
             if ready
                 && self.is_clear()
                 && let Some((batch, after)) = rest.split_first_chunk()
-                && self.push_any_batch(batch, &mut is_far)
+                && self.push_any_batch(batch, &mut is_far, observer)
             {
                 rest = after;
             } else {
                 let (head, after) = rest.split_at(rest.len().min(BATCH - past));
                 for &count in head {
-                    self.push(count);
+                    self.push_observed(count, observer);
                 }
                 rest = after;
             }
@@ -45,7 +55,7 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
 
     /// Adds a batch at a sample number that is a multiple of the batch's length and at least [`FULL`].
     /// If the angles are too far apart for 32 bits, it does nothing and returns `false`.
-    fn push_batch(&mut self, counts: &[i32; BATCH]) -> bool {
+    fn push_batch(&mut self, counts: &[i32; BATCH], observer: &mut impl MagnitudeObserver) -> bool {
         let n = self.number;
         let base = self.angle.wrapping_sub(SPAN / 2);
         let mut offsets = [0; RING + BATCH];
@@ -62,19 +72,20 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
 
         self.angle = base.wrapping_add(distance);
         self.number = n + BATCH as u32;
-        self.short[0].add_low(squares::<1, BATCH>(&offsets));
-        self.short[1].add_low(squares::<2, BATCH>(&offsets));
+        self.short[0].add_low(squares::<1, BATCH>(&offsets, 0, observer));
+        self.short[1].add_low(squares::<2, BATCH>(&offsets, 1, observer));
         if OCTAVES > FIRST {
-            self.levels[0].sum.add_low(squares::<4, BATCH>(&offsets));
+            let squares = squares::<4, BATCH>(&offsets, FIRST, observer);
+            self.levels[0].sum.add_low(squares);
         }
         self.store::<BATCH>(0, n + 1, base, &offsets);
 
         // Level 1 and those above still wait for the boundary at n, which is the last of the older
         // ones. They leave the last boundary of the batch to their next turn.
-        self.take::<{ BATCH >> 1 }>(1, n, base, &mut offsets, RING - 1);
-        self.take::<{ BATCH >> 2 }>(2, n, base, &mut offsets, RING);
-        self.take::<{ BATCH >> 3 }>(3, n, base, &mut offsets, RING);
-        self.take::<{ BATCH >> 4 }>(4, n, base, &mut offsets, RING);
+        self.take::<{ BATCH >> 1 }>((1, n), base, (&mut offsets, RING - 1), observer);
+        self.take::<{ BATCH >> 2 }>((2, n), base, (&mut offsets, RING), observer);
+        self.take::<{ BATCH >> 3 }>((3, n), base, (&mut offsets, RING), observer);
+        self.take::<{ BATCH >> 4 }>((4, n), base, (&mut offsets, RING), observer);
         for level in 5..=DEPTH {
             if level + FIRST < OCTAVES
                 && let Some(own) = self.levels.get_mut(level)
@@ -83,24 +94,32 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
                 for (block, &offset) in
                     (n >> level..u32::MAX).zip(boundaries.step_by(1 << (level - 4)))
                 {
-                    own.push(block, base.wrapping_add(u64::from(offset)), 0);
+                    let difference = own.push(block, base.wrapping_add(u64::from(offset)), 0);
+                    if let Some(difference) = difference {
+                        observer.observe(level + FIRST, difference);
+                    }
                 }
             }
         }
-        self.complete_scheduled(self.number);
+        self.observe_scheduled(observer);
         true
     }
 
     /// Adds a batch in the way that suits it. If none does, it does nothing and returns `false`. `is_far` says whether
     /// the last batch had angles that are too far apart for 32 bits, so that this one probably has them, too.
     #[inline(always)]
-    fn push_any_batch(&mut self, counts: &[i32; BATCH], is_far: &mut bool) -> bool {
-        if !*is_far && self.push_batch(counts) {
+    fn push_any_batch(
+        &mut self,
+        counts: &[i32; BATCH],
+        is_far: &mut bool,
+        observer: &mut impl MagnitudeObserver,
+    ) -> bool {
+        if !*is_far && self.push_batch(counts, observer) {
             return true;
         }
         #[cfg(target_pointer_width = "64")]
         {
-            *is_far = self.push_wide_batch(counts);
+            *is_far = self.push_wide_batch(counts, observer);
         }
         *is_far
     }
@@ -109,11 +128,10 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
     #[inline(always)]
     fn take<const COUNT: usize>(
         &mut self,
-        level: usize,
-        n: u32,
+        (level, n): (usize, u32),
         base: u64,
-        offsets: &mut Offsets,
-        from: usize,
+        (offsets, from): (&mut Offsets, usize),
+        observer: &mut impl MagnitudeObserver,
     ) {
         for j in 0..COUNT {
             offsets[RING + j] = offsets[from + 2 * j];
@@ -123,12 +141,24 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
         }
         let block = n >> level;
         if self.recall(level, block, base, offsets) < SPAN {
-            self.levels[level].sum.add_low(squares::<4, COUNT>(offsets));
+            let squares = squares::<4, COUNT>(offsets, level + FIRST, observer);
+            self.levels[level].sum.add_low(squares);
             self.store::<COUNT>(level, block, base, offsets);
         } else {
             for (block, &offset) in (block..).zip(&offsets[RING..RING + COUNT]) {
-                self.levels[level].push(block, base.wrapping_add(u64::from(offset)), 0);
+                let angle = base.wrapping_add(u64::from(offset));
+                if let Some(difference) = self.levels[level].push(block, angle, 0) {
+                    observer.observe(level + FIRST, difference);
+                }
             }
+        }
+    }
+
+    /// Updates the level whose turn it is at the end of a batch.
+    #[inline(always)]
+    pub(super) fn observe_scheduled(&mut self, observer: &mut impl MagnitudeObserver) {
+        if let Some((octave, difference)) = self.complete_scheduled(self.number) {
+            observer.observe(octave, difference);
         }
     }
 
@@ -165,7 +195,11 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
 /// The sum of squared second differences at distance `LAG`, over the `COUNT` angles after the older
 /// ones.
 #[inline(always)]
-fn squares<const LAG: usize, const COUNT: usize>(offsets: &Offsets) -> u64 {
+fn squares<const LAG: usize, const COUNT: usize>(
+    offsets: &Offsets,
+    octave: usize,
+    observer: &mut impl MagnitudeObserver,
+) -> u64 {
     let mut magnitudes = [0; COUNT];
     for (j, magnitude) in magnitudes.iter_mut().enumerate() {
         let i = RING + j;
@@ -174,6 +208,7 @@ fn squares<const LAG: usize, const COUNT: usize>(offsets: &Offsets) -> u64 {
         let oldest = middle.wrapping_sub(offsets[i - 2 * LAG]);
         *magnitude = (newest.wrapping_sub(oldest) as i32).unsigned_abs();
     }
+    observer.observe_magnitudes(octave, &magnitudes);
     sum_of_squares(&magnitudes)
 }
 

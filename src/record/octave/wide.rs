@@ -4,7 +4,7 @@
 //! difference within ±2^31, and the upper half shows whether it is.
 
 use super::{
-    Accumulator, FIRST, RING,
+    Accumulator, FIRST, MagnitudeObserver, RING,
     slice::{BATCH, DEPTH},
 };
 use crate::record::square_sum::SquareSum;
@@ -35,8 +35,10 @@ impl Offsets {
     /// The sum of squared second differences at distance `LAG`, over the `COUNT` angles after the older ones; `None` if
     /// one of them may be beyond ±2^31.
     #[inline(always)]
-    fn squares<const LAG: usize, const COUNT: usize>(&self) -> Option<u128> {
-        let mut magnitudes = [0; COUNT];
+    fn squares<const LAG: usize, const COUNT: usize>(
+        &self,
+        magnitudes: &mut [u32; COUNT],
+    ) -> Option<u128> {
         let mut bits = 0;
         for (j, magnitude) in magnitudes.iter_mut().enumerate() {
             let i = RING + j;
@@ -50,7 +52,7 @@ impl Offsets {
             // Rounding makes this differ from the upper half of the difference by less than 2.
             bits |= (upper ^ (upper >> 31)).wrapping_add(3);
         }
-        (bits < 1 << (31 - SHIFT)).then(|| sum_of_squares(&magnitudes))
+        (bits < 1 << (31 - SHIFT)).then(|| sum_of_squares(magnitudes))
     }
 }
 
@@ -76,7 +78,11 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
     /// Adds a batch as `push_batch` does. If differences at the lowest distances are beyond 32 bits, it does nothing and
     /// returns `false`.
     #[inline(never)]
-    pub(super) fn push_wide_batch(&mut self, counts: &[i32; BATCH]) -> bool {
+    pub(super) fn push_wide_batch(
+        &mut self,
+        counts: &[i32; BATCH],
+        observer: &mut impl MagnitudeObserver,
+    ) -> bool {
         let n = self.number;
         let base = self.angle;
         let mut offsets = Offsets {
@@ -90,14 +96,19 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
             distance = distance.wrapping_add(count.into());
             offsets.set(RING + j, distance);
         }
+        let mut magnitudes = [[0; BATCH]; FIRST + 1];
+        let [one, two, four] = &mut magnitudes;
         let squares = [
-            offsets.squares::<1, BATCH>(),
-            offsets.squares::<2, BATCH>(),
-            offsets.squares::<4, BATCH>(),
+            offsets.squares::<1, BATCH>(one),
+            offsets.squares::<2, BATCH>(two),
+            offsets.squares::<4, BATCH>(four),
         ];
         let [Some(single), Some(double), Some(fourfold)] = squares else {
             return false;
         };
+        for (octave, magnitudes) in magnitudes.iter().enumerate().take(OCTAVES) {
+            observer.observe_magnitudes(octave, magnitudes);
+        }
         self.angle = base.wrapping_add_signed(distance);
         self.number = n + BATCH as u32;
         self.short[0].add_sum(&SquareSum::from(single));
@@ -108,21 +119,24 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
         self.store_wide::<1, BATCH>(0, base, &offsets);
 
         // As in `push_batch`.
-        self.take_wide::<{ BATCH >> 1 }>(1, n, base, &mut offsets, RING - 1);
-        self.take_wide::<{ BATCH >> 2 }>(2, n, base, &mut offsets, RING);
-        self.take_wide::<{ BATCH >> 3 }>(3, n, base, &mut offsets, RING);
-        self.take_wide::<{ BATCH >> 4 }>(4, n, base, &mut offsets, RING);
+        self.take_wide::<{ BATCH >> 1 }>((1, n), base, (&mut offsets, RING - 1), observer);
+        self.take_wide::<{ BATCH >> 2 }>((2, n), base, (&mut offsets, RING), observer);
+        self.take_wide::<{ BATCH >> 3 }>((3, n), base, (&mut offsets, RING), observer);
+        self.take_wide::<{ BATCH >> 4 }>((4, n), base, (&mut offsets, RING), observer);
         for level in 5..=DEPTH {
             if level + FIRST < OCTAVES
                 && let Some(own) = self.levels.get_mut(level)
             {
                 let boundaries = (RING..RING + (BATCH >> 4)).step_by(1 << (level - 4));
                 for (block, i) in (n >> level..u32::MAX).zip(boundaries) {
-                    own.push(block, base.wrapping_add_signed(offsets.get(i)), 0);
+                    let difference = own.push(block, base.wrapping_add_signed(offsets.get(i)), 0);
+                    if let Some(difference) = difference {
+                        observer.observe(level + FIRST, difference);
+                    }
                 }
             }
         }
-        self.complete_scheduled(self.number);
+        self.observe_scheduled(observer);
         true
     }
 
@@ -130,11 +144,10 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
     #[inline(always)]
     fn take_wide<const COUNT: usize>(
         &mut self,
-        level: usize,
-        n: u32,
+        (level, n): (usize, u32),
         base: u64,
-        offsets: &mut Offsets,
-        from: usize,
+        (offsets, from): (&mut Offsets, usize),
+        observer: &mut impl MagnitudeObserver,
     ) {
         for j in 0..COUNT {
             offsets.lower[RING + j] = offsets.lower[from + 2 * j];
@@ -145,12 +158,17 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
         }
         let block = n >> level;
         self.recall_wide::<0>(level, base, offsets);
-        if let Some(squares) = offsets.squares::<4, COUNT>() {
+        let mut magnitudes = [0; COUNT];
+        if let Some(squares) = offsets.squares::<4, COUNT>(&mut magnitudes) {
+            observer.observe_magnitudes(level + FIRST, &magnitudes);
             self.levels[level].sum.add_sum(&SquareSum::from(squares));
             self.store_wide::<0, COUNT>(level, base, offsets);
         } else {
             for (block, i) in (block..).zip(RING..RING + COUNT) {
-                self.levels[level].push(block, base.wrapping_add_signed(offsets.get(i)), 0);
+                let angle = base.wrapping_add_signed(offsets.get(i));
+                if let Some(difference) = self.levels[level].push(block, angle, 0) {
+                    observer.observe(level + FIRST, difference);
+                }
             }
         }
     }

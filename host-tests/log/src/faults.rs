@@ -12,6 +12,9 @@ const NOTED: f64 = 0.1;
 /// The axes of a sensor.
 const SENSOR: usize = 3;
 
+/// The counts that are watched together.
+const TOGETHER: usize = 1 << 10;
+
 /// How the faults of the axes are watched.
 #[derive(Clone, Default)]
 pub(super) struct Plan {
@@ -71,8 +74,11 @@ impl Faults {
     /// Watches some counts of an axis.
     pub(super) fn push(&mut self, axis: usize, counts: &[i32]) {
         let (faults, places) = (&mut self.axes[axis], &mut self.places[axis]);
-        for &count in counts {
-            places.push(faults.push(count) == Some(0));
+        let mut steps = [0; TOGETHER];
+        for counts in counts.chunks(TOGETHER) {
+            faults.push_slice(counts, &mut steps);
+            let steps = &steps[..counts.len()];
+            steps.iter().for_each(|step| places.push(*step == 0));
         }
     }
 
@@ -99,11 +105,18 @@ impl Faults {
         let counts = columns.as_chunks::<SENSOR>().0;
         let sensors = self.sensors.iter_mut().zip(&mut self.places);
         for ((axes, (reads, places)), [x, y, z]) in axes.zip(sensors).zip(counts) {
-            let [of_x, of_y, of_z] = axes;
-            for ((&x, &y), &z) in x.iter().zip(y).zip(z) {
-                let steps = [of_x.push(x), of_y.push(y), of_z.push(z)];
-                reads.push_steps([x, y, z], steps);
-                places.push(steps == [Some(0); SENSOR]);
+            let counts = [x, y, z].map(|counts| counts.chunks(TOGETHER));
+            let [x, y, z] = counts;
+            let mut steps = [[0; TOGETHER]; SENSOR];
+            for ((x, y), z) in x.zip(y).zip(z) {
+                for ((axis, counts), steps) in axes.iter_mut().zip([x, y, z]).zip(&mut steps) {
+                    axis.push_slice(counts, steps);
+                }
+                for (row, ((&x, &y), &z)) in x.iter().zip(y).zip(z).enumerate() {
+                    let steps = steps.each_ref().map(|steps| steps[row]);
+                    reads.push_steps([x, y, z], steps.map(Some));
+                    places.push(steps == [0; SENSOR]);
+                }
             }
         }
     }

@@ -42,10 +42,9 @@ struct Watched<const COVARIATES: usize, M: MomentPart> {
     motion: FirstMotion,
 }
 
-/// An axis of which only the curve and the integrity are kept. Both take slices, which is several times as fast.
-struct Alone {
-    accumulator: Accumulator<OCTAVES>,
-    integrity: Integrity,
+/// An axis without covariates, which takes slices. That is several times as fast.
+struct Alone<M: MomentPart> {
+    axis: Axis<OCTAVES, 0, (), M>,
     motion: FirstMotion,
 }
 
@@ -126,24 +125,20 @@ where
     }
 }
 
-impl WatchedAxis for Alone {
+impl<M> WatchedAxis for Alone<M>
+where
+    M: MomentPart,
+    Axis<OCTAVES, 0, (), M>: Send,
+{
     fn push(&mut self, counts: &[i32], _: &[Vec<i32>]) {
-        self.accumulator.push_slice(counts);
-        let (blocks, rest) = counts.as_chunks::<LOOK>();
-        for block in blocks {
-            self.integrity.push_slice(block);
-            self.motion.look(&self.integrity);
-        }
-        self.integrity.push_slice(rest);
+        let motion = &mut self.motion;
+        let look = |_, integrity: &Integrity| motion.look(integrity);
+        self.axis.push_slices_looking([counts], look);
     }
 
     fn gap(&mut self, missing: u64) {
         self.motion.gap(missing);
-        match missing {
-            0 => self.accumulator.gap(),
-            missing => self.accumulator.lost(missing),
-        }
-        self.integrity.gap();
+        self.axis.miss(missing);
     }
 
     fn moved_at(&self) -> Option<u64> {
@@ -151,14 +146,16 @@ impl WatchedAxis for Alone {
     }
 
     fn accumulator(&self) -> &Accumulator<OCTAVES> {
-        &self.accumulator
+        let [accumulator] = self.axis.accumulators();
+        accumulator
     }
 
-    fn evidence(&self, _: Scale, _: &[f64]) -> Result<AxisEvidence, Error> {
+    fn evidence(&self, scale: Scale, _: &[f64]) -> Result<AxisEvidence, Error> {
+        let told = self.axis.record_so_far(0, (scale, []))?;
         Ok(AxisEvidence {
-            kurtosis: Kurtosis::default(),
+            kurtosis: told.kurtosis.unwrap_or_default(),
             covariates: Vec::new(),
-            invalid: self.integrity.verdict(),
+            invalid: told.invalid,
         })
     }
 }
@@ -169,14 +166,22 @@ pub(super) type SharedSums = Axis<OCTAVES, 1, (), ()>;
 /// An empty axis with the given number of covariates, at most [`MOST`], and with fourth moments or without.
 pub(super) fn axis(covariates: usize, moments: bool) -> Box<dyn WatchedAxis> {
     match (covariates, moments) {
-        (0, false) => Box::new(Alone {
-            accumulator: Accumulator::new(),
-            integrity: Integrity::new(),
-            motion: FirstMotion::default(),
-        }),
+        (0, false) => alone::<()>(),
+        (0, true) => alone::<Moments>(),
         (_, false) => with_covariates::<()>(covariates),
         (_, true) => with_covariates::<Moments>(covariates),
     }
+}
+
+fn alone<M>() -> Box<dyn WatchedAxis>
+where
+    M: MomentPart + 'static,
+    M::Sums<OCTAVES>: Send,
+{
+    Box::new(Alone::<M> {
+        axis: Axis::new(),
+        motion: FirstMotion::default(),
+    })
 }
 
 fn with_covariates<M>(covariates: usize) -> Box<dyn WatchedAxis>
@@ -185,7 +190,6 @@ where
     M::Sums<OCTAVES>: Send,
 {
     match covariates {
-        0 => Box::new(Watched::<0, M>::new()),
         1 => Box::new(Watched::<1, M>::new()),
         2 => Box::new(Watched::<2, M>::new()),
         3 => Box::new(Watched::<3, M>::new()),

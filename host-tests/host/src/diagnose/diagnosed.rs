@@ -63,8 +63,20 @@ pub struct Diagnosed {
 }
 
 impl Diagnosed {
-    /// Diagnoses an axis, from this model on.
+    /// Diagnoses an axis, from this model on, and finds out which effects the record would have shown.
     pub fn new(
+        axis: AxisCurve,
+        evidence: Evidence,
+        model: &Model,
+        max_effects: Option<usize>,
+    ) -> Result<Self, Error> {
+        let mut diagnosed = Self::without_limits(axis, evidence, model, max_effects)?;
+        diagnosed.limits = diagnosed.detection_limits()?;
+        Ok(diagnosed)
+    }
+
+    /// As [`new`](Self::new), without the limits of detection, which take longer than the rest.
+    pub fn without_limits(
         axis: AxisCurve,
         mut evidence: Evidence,
         model: &Model,
@@ -124,7 +136,6 @@ impl Diagnosed {
             options,
             candidates,
         };
-        diagnosed.limits = diagnosed.detection_limits()?;
         diagnosed.lines = diagnosed.lines()?;
         diagnosed.combs = lines::combs(&diagnosed.lines, diagnosed.axis.rate_hz);
         diagnosed.tried = diagnosed.tried_in_last()?;

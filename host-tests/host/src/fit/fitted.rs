@@ -210,7 +210,7 @@ pub fn fitted(
 ) -> Result<Vec<Fitted>, Failure> {
     let fit = |(axis, evidence): (AxisCurve, Evidence)| {
         let (model, method) = (settings.model, settings.method);
-        let diagnosed = Diagnosed::new(axis.clone(), evidence.clone(), model, None);
+        let diagnosed = Diagnosed::without_limits(axis.clone(), evidence.clone(), model, None);
         let diagnosed =
             diagnosed.map_err(|error| record::library_failure(path, &axis.axis, error))?;
         let judgement = Judgement::of(&diagnosed);

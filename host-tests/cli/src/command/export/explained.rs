@@ -103,7 +103,7 @@ pub(super) fn explained(arguments: &Arguments, sensor: Sensor) -> Result<Vec<Exp
 impl Explained {
     /// The last model of a diagnosis.
     fn diagnosed(axis: AxisCurve, evidence: Evidence, model: &Model) -> Result<Self, Error> {
-        let mut diagnosed = Diagnosed::new(axis, evidence, model, None)?;
+        let mut diagnosed = Diagnosed::without_limits(axis, evidence, model, None)?;
         let (verdict, invalid) = (verdict(&diagnosed), diagnosed.invalid());
         let last = diagnosed.steps.len().saturating_sub(1);
         let model_name = diagnosed.model_name(last);

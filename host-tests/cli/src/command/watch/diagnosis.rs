@@ -33,7 +33,7 @@ impl Found {
     pub(super) fn of((axis, evidence): (AxisCurve, Evidence)) -> Option<Self> {
         let (name, samples) = (axis.axis.clone(), axis.samples);
         let model = Model::ieee_952();
-        let diagnosed = Diagnosed::new(axis, evidence, &model, None).ok()?;
+        let diagnosed = Diagnosed::without_limits(axis, evidence, &model, None).ok()?;
         let (_, last) = diagnosed.ends()?;
         let octaves = last.comparison.octaves.iter();
         Some(Self {

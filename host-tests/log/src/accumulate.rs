@@ -182,6 +182,8 @@ struct Passed {
 struct Nothing;
 
 impl Visitor for Nothing {
+    type Followed = ();
+
     fn visit<F: Field>(&mut self, _axis: usize, _value: F) -> Result<(), Stop> {
         Ok(())
     }
@@ -389,6 +391,10 @@ struct Counts {
 }
 
 impl Visitor for Counts {
+    const ONLY_COUNTS: bool = true;
+
+    type Followed = ();
+
     #[inline]
     fn visit<F: Field>(&mut self, axis: usize, value: F) -> Result<(), Stop> {
         let count = match self.tried.count(axis, &value) {
@@ -437,6 +443,8 @@ impl Visitor for Counts {
 struct Ranges(Vec<Range>);
 
 impl Visitor for Ranges {
+    type Followed = ();
+
     #[inline]
     fn visit<F: Field>(&mut self, axis: usize, value: F) -> Result<(), Stop> {
         // Columns that are tried without being asked for have no range.
@@ -467,6 +475,8 @@ struct Rounded {
 }
 
 impl Visitor for Rounded {
+    type Followed = ();
+
     #[inline]
     fn visit<F: Field>(&mut self, axis: usize, value: F) -> Result<(), Stop> {
         if let Some(count) = self.tried.count(axis, &value) {

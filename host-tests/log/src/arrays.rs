@@ -3,10 +3,11 @@
 use super::{
     Covariates, Log, Options,
     columns::{AxisColumn, Columns, Look},
-    field::Field,
+    field::Flaw,
     metadata::Metadata,
     reading::{Watched, read_table},
-    table::{Ended, RUN, Stop, Table, Visitor, after_stop},
+    runs::{Rows, Run, Values},
+    table::{Ended, RUN, Table, Visitor},
 };
 use crate::failure::{Failure, Place};
 use indicatif::ProgressBar;
@@ -126,81 +127,31 @@ pub fn read_arrays(
 
 /// The first values of a column that are numbers.
 fn head(numbers: &Numbers<'_>, rows: usize) -> Vec<f64> {
-    let mut run = Run::of(numbers);
-    run.read(numbers, 0, rows.min(LOOKS));
+    let mut run = run_of(numbers);
+    read(&mut run, numbers, 0, rows.min(LOOKS));
     (0..rows.min(LOOKS))
         .filter_map(|row| run.number(row))
         .collect()
 }
 
-/// Some rows of a column.
-enum Run {
-    Int32(Vec<i32>),
-    Int64(Vec<i64>),
-    Uint64(Vec<u64>),
-    Float(Vec<f64>),
+/// A run for a column of these numbers.
+fn run_of(numbers: &Numbers<'_>) -> Run {
+    Run::of(match numbers {
+        Numbers::Int32(_) => Values::Int32(vec![0; RUN]),
+        Numbers::Int64(_) => Values::Int64(vec![0; RUN]),
+        Numbers::Uint64(_) => Values::Uint64(vec![0; RUN]),
+        Numbers::Float(_) => Values::Float(vec![0.0; RUN]),
+    })
 }
 
-/// Does the same with the values of any type.
-macro_rules! with_values {
-    ($run:expr, $values:ident => $work:expr) => {
-        match $run {
-            Run::Int32($values) => $work,
-            Run::Int64($values) => $work,
-            Run::Uint64($values) => $work,
-            Run::Float($values) => $work,
-        }
-    };
-}
-
-impl Run {
-    fn of(numbers: &Numbers<'_>) -> Self {
-        match numbers {
-            Numbers::Int32(_) => Self::Int32(vec![0; RUN]),
-            Numbers::Int64(_) => Self::Int64(vec![0; RUN]),
-            Numbers::Uint64(_) => Self::Uint64(vec![0; RUN]),
-            Numbers::Float(_) => Self::Float(vec![0.0; RUN]),
-        }
-    }
-
-    /// Reads some rows of the column that this run was made for.
-    fn read(&mut self, numbers: &Numbers<'_>, first: usize, rows: usize) {
-        match (self, numbers) {
-            (Self::Int32(run), Numbers::Int32(copy)) => copy(first, &mut run[..rows]),
-            (Self::Int64(run), Numbers::Int64(copy)) => copy(first, &mut run[..rows]),
-            (Self::Uint64(run), Numbers::Uint64(copy)) => copy(first, &mut run[..rows]),
-            (Self::Float(run), Numbers::Float(copy)) => copy(first, &mut run[..rows]),
-            _ => {}
-        }
-    }
-
-    fn number(&self, row: usize) -> Option<f64> {
-        with_values!(self, values => values[row].number().ok())
-    }
-
-    /// Whether all of the first rows are numbers. Integers are.
-    fn are_numbers(&self, rows: usize) -> bool {
-        match self {
-            // Without an early end, the loop is spread over vectors.
-            Self::Float(values) => {
-                let values = values[..rows].iter();
-                values.fold(true, |all, value| all & value.is_finite())
-            }
-            _ => true,
-        }
-    }
-
-    fn visit<V: Visitor>(&self, axis: usize, row: usize, visitor: &mut V) -> Result<(), Stop> {
-        with_values!(self, values => visitor.visit(axis, values[row]))
-    }
-
-    fn visit_run<V: Visitor>(
-        &self,
-        axis: usize,
-        rows: usize,
-        visitor: &mut V,
-    ) -> Result<(), (usize, Stop)> {
-        with_values!(self, values => visitor.visit_run(axis, &values[..rows]))
+/// Reads some rows of the column that a run was made for.
+fn read(run: &mut Run, numbers: &Numbers<'_>, first: usize, rows: usize) {
+    match (&mut run.values, numbers) {
+        (Values::Int32(run), Numbers::Int32(copy)) => copy(first, &mut run[..rows]),
+        (Values::Int64(run), Numbers::Int64(copy)) => copy(first, &mut run[..rows]),
+        (Values::Uint64(run), Numbers::Uint64(copy)) => copy(first, &mut run[..rows]),
+        (Values::Float(run), Numbers::Float(copy)) => copy(first, &mut run[..rows]),
+        _ => {}
     }
 }
 
@@ -220,7 +171,7 @@ impl Table for Arrays<'_> {
         progress: &ProgressBar,
     ) -> Result<Ended, Failure> {
         let numbers = |axis: &AxisColumn| &self.columns[axis.column].numbers;
-        let mut runs: Vec<Run> = axes.iter().map(|axis| Run::of(numbers(axis))).collect();
+        let mut runs: Vec<Run> = axes.iter().map(|axis| run_of(numbers(axis))).collect();
         progress.set_length(self.rows as u64);
         for first in (0..self.rows).step_by(RUN) {
             if progress.is_finished() {
@@ -229,29 +180,17 @@ impl Table for Arrays<'_> {
             progress.set_position(first as u64);
             let rows = RUN.min(self.rows - first);
             for (run, axis) in runs.iter_mut().zip(axes) {
-                run.read(numbers(axis), first, rows);
+                read(run, numbers(axis), first, rows);
             }
-            let place = |row: usize| Place::row(&self.path, (first + row) as u64 + 1);
-            // A row whose values are not all numbers has to be seen as a row.
-            if V::BY_ROWS || !runs.iter().all(|run| run.are_numbers(rows)) {
-                for row in 0..rows {
-                    for (i, run) in runs.iter().enumerate() {
-                        let Err(stop) = run.visit(i, row, visitor) else {
-                            continue;
-                        };
-                        if !after_stop(visitor, (i, &stop), axes, || place(row))? {
-                            return Ok(Ended::NotCounts);
-                        }
-                        break;
-                    }
-                }
-                continue;
-            }
-            for (i, run) in runs.iter().enumerate() {
-                if let Err((row, stop)) = run.visit_run(i, rows, visitor) {
-                    after_stop(visitor, (i, &stop), axes, || place(row))?;
-                    return Ok(Ended::NotCounts);
-                }
+            let shown = Rows {
+                runs: &runs,
+                rows,
+                axes,
+                place: |row| Place::row(&self.path, (first + row) as u64 + 1),
+                of_stamp: |_, _: &Flaw| None,
+            };
+            if !shown.show(visitor)? {
+                return Ok(Ended::NotCounts);
             }
         }
         Ok(Ended::AtTheLastRow)

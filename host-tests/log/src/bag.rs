@@ -365,6 +365,8 @@ pub(super) fn other_messages(
     text.finish()?;
     Ok(Some(Converted {
         text: file,
+        #[cfg(feature = "tables")]
+        numbers: None,
         note: Some(format!("topic {topic}")),
     }))
 }

@@ -199,12 +199,17 @@ impl Clock {
                 "time stamps go from {last} to {stamp}, as hours, minutes and seconds in one number do"
             )));
         }
-        self.end_delays(stamp, step);
+        if !self.behind.is_empty() {
+            self.end_delays(stamp, step);
+        }
         let is_long = step > self.pace.longest;
         let known = self.late.pop_if(|late| late.row == self.rows);
         if let Some(late) = known {
             let delay = step - (late.lost + 1) as f64 * self.pace.step;
             self.delayed = (self.delayed.0 + 1, self.delayed.1.max(delay));
+        }
+        if !is_long && known.is_none() {
+            return self.follow_plainly(step, rows);
         }
         let samples = step / self.pace.step;
         let told = ((samples.round() - 1.0) * self.pace.rows.round()).max(0.0) as u64;
@@ -239,6 +244,11 @@ impl Clock {
             }
             return Ok(Tick::Gap(lost));
         }
+        self.follow_plainly(step, rows)
+    }
+
+    /// Takes a step behind which nothing is missing.
+    fn follow_plainly(&mut self, step: f64, rows: u64) -> Result<Tick, Flaw> {
         self.gaps_in_a_row = 0;
         if self.rows_of_steps == 0 && self.pace.rows > 1.0 {
             self.first_burst = (rows, step);
@@ -250,6 +260,10 @@ impl Clock {
 
     /// Whether a minute begins between two stamps of the form HHMMSS, of which a minute has hundred and an hour ten thousand.
     fn is_clock_time(&self, last: Stamp, stamp: Stamp) -> bool {
+        // Few steps are that long, and nothing of what is below needs to be computed for the others.
+        if stamp.since(last) < self.pace.step + 39.0 * self.pace.per_second {
+            return false;
+        }
         let [last_s, now_s] = [last, stamp].map(|one| self.seconds(one.since(Stamp::Whole(0))));
         let skipped = now_s - last_s - self.pace.seconds(self.pace.step);
         let is_skip = [40.0, 4040.0]

@@ -1,6 +1,8 @@
 //! The text that is made of a log in another format, in a temporary file.
 
 use crate::failure::{Failure, Place};
+#[cfg(feature = "tables")]
+use crate::values::NumberFile;
 use std::{
     fs::File,
     io::{self, BufWriter, ErrorKind, Write},
@@ -21,6 +23,9 @@ pub(super) const LEFT_OUT: &str = "left out: ";
 /// A text that is deleted when this is dropped.
 pub(super) struct Converted {
     pub(super) text: TempPath,
+    /// All numbers in binary, if the text is that of some rows alone.
+    #[cfg(feature = "tables")]
+    pub(super) numbers: Option<NumberFile>,
     pub(super) note: Option<String>,
 }
 

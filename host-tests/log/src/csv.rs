@@ -6,7 +6,7 @@ use super::{
     columns::{AxisColumn, Columns, Look},
     dialect::Dialect,
     edit::{Edit, Kept},
-    field::{Field, Stamp, Text},
+    field::{Field, Flaw, Stamp, Text},
     filled::Filled,
     glue::Glue,
     lines::{Cut, Lines},
@@ -179,6 +179,44 @@ impl Csv {
             format!("every {} row is unlike those beside it, as rows of several sensors are", ["second", "third"][turns - 2]),
             "write the rows of one sensor to a file of their own, or give --rate if it is one sensor",
         ))
+    }
+
+    /// Whether rows are left out, or something is cut off them.
+    #[cfg(feature = "tables")]
+    pub(super) fn is_edited(&self) -> bool {
+        self.edit.glue.is_some() || self.edit.kept.is_some()
+    }
+
+    /// A row and its place. Rows are counted from 0, without comments and blank lines.
+    fn row_and_place(&self, row: u64) -> Option<(ByteRecord, Place)> {
+        let text = self.rows(&ProgressBar::hidden()).ok()?;
+        let mut reader = Records::new(text, self.start, self.dialect.delimiter());
+        let mut above = 0;
+        while reader.read().ok()? {
+            let fields = reader.row();
+            let is_comment = fields.get(0).is_some_and(|field| field.starts_with(b"#"));
+            if is_comment || is_blank(fields) {
+                continue;
+            }
+            if above == row {
+                return Some((fields.clone(), self.row_at(reader.row_offset())));
+            }
+            above += 1;
+        }
+        None
+    }
+
+    /// The place of a row.
+    pub(super) fn place_of(&self, row: u64) -> Place {
+        let place = self.row_and_place(row).map(|(_, place)| place);
+        place.unwrap_or_else(|| Place::file(&self.path))
+    }
+
+    /// The failure of the stamp of a row, if the row is that of another sensor.
+    pub(super) fn of_other_sensor(&self, row: u64, flaw: &Flaw) -> Option<Failure> {
+        let (fields, place) = self.row_and_place(row)?;
+        let field = |column: usize| fields.get(column).unwrap_or_default();
+        self.columns.of_other_sensor(&field, flaw, || place)
     }
 
     /// The text from the first row on, with one delimiter between values.

@@ -243,6 +243,31 @@ macro_rules! integer_fields {
 
 integer_fields!(i64 u64);
 
+/// A date and time in nanoseconds since 1970, or a time of day in nanoseconds since midnight.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Nanoseconds(pub(super) i64);
+
+impl Field for Nanoseconds {
+    fn count(&self) -> Option<i32> {
+        None
+    }
+
+    fn is_number(&self) -> bool {
+        false
+    }
+
+    fn number(&self) -> Result<f64, Flaw> {
+        Err(Flaw {
+            what: "a date or a time is not a number".into(),
+            remedy: "choose other columns with --columns",
+        })
+    }
+
+    fn stamp(&self) -> Result<Stamp, Flaw> {
+        Ok(Stamp::Whole(self.0))
+    }
+}
+
 impl Field for i32 {
     #[inline]
     fn count(&self) -> Option<i32> {

@@ -2,16 +2,18 @@
 
 #[cfg(any(feature = "bags", feature = "tables"))]
 use super::converted::Converted;
-#[cfg(feature = "tables")]
-use super::tables;
 use super::{
-    Axis, Covariates, Log, Options, csv, npy, part, parts,
+    Axis, Covariates, Log, Options,
+    cached::Cached,
+    csv, npy, part, parts,
     reading::{Watched, read_table},
     source::Format,
     ulog,
 };
 #[cfg(feature = "bags")]
 use super::{bag, bag_folder};
+#[cfg(feature = "tables")]
+use super::{table::Table as _, tables, typed::Typed};
 use crate::{
     failure::{Failure, Place},
     regular_file::Hold,
@@ -173,6 +175,8 @@ fn read_format(
     match format {
         Format::Text { gzip } => {
             let text = csv::Csv::open(path, gzip, options)?;
+            let length = path.metadata().map_or(0, |file| file.len());
+            let text = Cached::new(text, length);
             read_table(&text, path, options, wanted, progress)
         }
         Format::Parts => {
@@ -186,8 +190,26 @@ fn read_format(
         Format::Table(_) => Err(Failure::not_built_in("reading tables in binary").about(path)),
         #[cfg(feature = "tables")]
         Format::Table(kind) => {
-            let table = tables::convert(path, kind, options, progress)?;
-            read_converted(&table, path, options, wanted, progress)
+            // The rows of one sensor are chosen among those of the text.
+            let in_parts = options.rows.is_none();
+            let convert = |in_parts| tables::convert(path, kind, options, in_parts, progress);
+            let table = convert(in_parts)?;
+            let Some(numbers) = &table.numbers else {
+                return read_converted(&table, path, options, wanted, progress);
+            };
+            let text = csv::Csv::open_as(path, &table.text, false, options)?;
+            if text.is_edited() || text.columns().looks.len() != numbers.layout.columns.len() {
+                return read_converted(&convert(false)?, path, options, wanted, progress);
+            }
+            let whole = || {
+                let table = convert(false)?;
+                let text = csv::Csv::open_as(path, &table.text, false, options)?;
+                Ok((text, table.text))
+            };
+            let typed = Typed::new(path, text, numbers, &whole);
+            let (mut log, rest) = read_table(&typed, path, options, wanted, progress)?;
+            log.notes.extend(table.note);
+            Ok((log, rest))
         }
         Format::Npy | Format::Ulog if options.rows.is_some() => Err(rows_of_text(path)),
         Format::Npy => read_table(&npy::Npy::open(path)?, path, options, wanted, progress),

@@ -296,6 +296,8 @@ impl Visitor for Keep<'_> {
     /// A run of a single number would only take room for many.
     const BY_ROWS: bool = true;
 
+    type Followed = ();
+
     fn visit<F: Field>(&mut self, _axis: usize, value: F) -> Result<(), Stop> {
         *self.0 = value.number().ok();
         Ok(())

@@ -51,6 +51,8 @@ pub fn accumulate(
 struct Ranges(Vec<Range>);
 
 impl Visitor for Ranges {
+    type Followed = ();
+
     fn visit<F: Field>(&mut self, axis: usize, value: F) -> Result<(), Stop> {
         self.0[axis].include(value.exact().map_err(Stop::Flaw)?);
         Ok(())
@@ -118,6 +120,8 @@ impl Octaves {
 }
 
 impl Visitor for Octaves {
+    type Followed = ();
+
     fn visit<F: Field>(&mut self, axis: usize, value: F) -> Result<(), Stop> {
         value.number().map_err(Stop::Flaw)?;
         let count = self.count(axis, &value)?;

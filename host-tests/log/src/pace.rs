@@ -27,7 +27,7 @@ const SCATTER: (f64, f64) = (10.0, 0.6);
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Pace {
     /// The number of ticks in a second. A tick is the unit of the stamps.
-    per_second: f64,
+    pub(super) per_second: f64,
     /// The usual step, in ticks.
     pub(super) step: f64,
     /// The longest step that is not a gap, in ticks.

@@ -21,7 +21,7 @@ pub(super) struct Tally {
     first: Option<Failure>,
     /// The rows that the user leaves out.
     pub(super) cut: u64,
-    /// The time of the last row, in seconds from the first one.
+    /// The time of the last row, in seconds from the first one, where rows are left out by their time.
     pub(super) end_s: f64,
 }
 
@@ -52,6 +52,16 @@ impl Tally {
     }
 }
 
+/// What a stamp says of its row.
+pub(super) enum Followed {
+    /// It is that of the row before.
+    Repeated,
+    /// All rows are left out from here on.
+    BehindTheEnd,
+    /// It is that of a row at a time, before which so many samples are missing.
+    Row { at_s: f64, missing: u64 },
+}
+
 /// A visitor whose first columns are the time. It reports missing samples to the visitor inside, and leaves out rows.
 /// Unless `EACH` is set, there is neither a time nor a row to leave out, and values may come in runs.
 pub(super) struct Rows<'a, V, const EACH: bool> {
@@ -67,6 +77,8 @@ pub(super) struct Rows<'a, V, const EACH: bool> {
     first: Option<Stamp>,
     rate_hz: f64,
     dropped: &'a Dropped,
+    /// Whether no row is left out by its time.
+    is_whole: bool,
     /// The column that is shown, and the samples of time before the present row.
     column: usize,
     at: u64,
@@ -97,6 +109,7 @@ impl<'a, V: Visitor, const EACH: bool> Rows<'a, V, EACH> {
             seconds: None,
             first: None,
             rate_hz,
+            is_whole: dropped.is_none(),
             dropped,
             column: 0,
             at: 0,
@@ -116,30 +129,38 @@ impl<'a, V: Visitor, const EACH: bool> Rows<'a, V, EACH> {
         self.decide(at_s, 0);
     }
 
-    /// Takes the stamp of a row.
-    fn stamp(&mut self, stamp: Stamp) -> Result<(), Stop> {
+    /// Follows the stamp of a row.
+    #[inline]
+    fn follow(&mut self, stamp: Stamp) -> Result<Followed, Stop> {
         let Some(clock) = &mut self.clock else {
-            return Ok(());
+            return Ok(Followed::Repeated);
         };
         let stamp = clock.unwrap(stamp);
         let first = *self.first.get_or_insert(stamp);
-        let at_s = clock.seconds(stamp.since(first));
+        // The time of a row matters only where rows are left out by it.
+        let at_s = match self.is_whole {
+            true => 0.0,
+            false => clock.seconds(stamp.since(first)),
+        };
         if self.dropped.ends_before(at_s) {
             self.has_ended = true;
-            self.decide(at_s, 0);
-            return Ok(());
+            return Ok(Followed::Row { at_s, missing: 0 });
         }
         let missing = match clock.tick(stamp).map_err(Stop::Clock)? {
-            Tick::Repeated => {
-                self.is_left_out = true;
-                return Ok(());
-            }
+            Tick::Repeated => return Ok(Followed::Repeated),
             Tick::Next => 0,
             Tick::Gap(missing) => missing,
         };
         let told = std::mem::take(&mut self.told);
-        self.decide(at_s, missing.max(told));
-        Ok(())
+        let missing = missing.max(told);
+        Ok(Followed::Row { at_s, missing })
+    }
+
+    /// Whether a row follows the one before, and is not left out.
+    #[inline]
+    fn is_plain(&self, at_s: f64, missing: u64) -> bool {
+        missing + self.missing == 0
+            && (self.is_whole || (!self.has_ended && !self.dropped.covers(at_s)))
     }
 
     /// Decides whether a row is left out before which so many samples are missing.
@@ -178,6 +199,9 @@ impl<'a, V: Visitor, const EACH: bool> Rows<'a, V, EACH> {
 impl<V: Visitor, const EACH: bool> Visitor for Rows<'_, V, EACH> {
     /// A time tells whether its own row is left out, and whether samples are missing before it.
     const BY_ROWS: bool = EACH;
+    const ONLY_COUNTS: bool = V::ONLY_COUNTS;
+
+    type Followed = Followed;
 
     #[inline]
     fn visit<F: Field>(&mut self, column: usize, value: F) -> Result<(), Stop> {
@@ -194,7 +218,8 @@ impl<V: Visitor, const EACH: bool> Visitor for Rows<'_, V, EACH> {
                     (self.column, self.at, self.missing) = (axis, 0, 0);
                 }
                 self.begin();
-            } else if !EACH && axis == 0 {
+            } else if axis == 0 && !self.is_left_out {
+                // A row may have been lost whose stamp was shown together with that of the present one.
                 self.tell_missing();
             }
             return match self.is_left_out {
@@ -210,15 +235,55 @@ impl<V: Visitor, const EACH: bool> Visitor for Rows<'_, V, EACH> {
         if let Some(seconds) = self.seconds {
             stamp = stamp.behind_seconds(seconds);
         }
-        self.stamp(stamp)
+        let followed = self.follow(stamp)?;
+        self.settle(followed);
+        Ok(())
     }
 
     fn visit_run<F: Field>(&mut self, column: usize, values: &[F]) -> Result<(), (usize, Stop)> {
-        if column == 0 {
-            self.tally.rows += values.len() as u64;
+        let axis = column - self.columns;
+        if axis == 0 {
+            // The stamps count their rows.
+            if !EACH {
+                self.tally.rows += values.len() as u64;
+            }
             self.tell_missing();
         }
-        self.visitor.visit_run(column, values)
+        self.visitor.visit_run(axis, values)
+    }
+
+    fn takes_stamps(&self) -> bool {
+        EACH && self.columns == 1 && self.is_by_rows
+    }
+
+    fn visit_stamps<F: Field>(
+        &mut self,
+        stamps: &[F],
+    ) -> (usize, Result<Option<Self::Followed>, Stop>) {
+        for (row, stamp) in stamps.iter().enumerate() {
+            self.tally.rows += 1;
+            if self.has_ended {
+                self.tally.cut += 1;
+                return (row, Ok(Some(Followed::BehindTheEnd)));
+            }
+            let followed = stamp.stamp().map_err(Stop::NoStamp);
+            match followed.and_then(|stamp| self.follow(stamp)) {
+                Ok(Followed::Row { at_s, missing }) if self.is_plain(at_s, missing) => {
+                    self.tally.end_s = at_s;
+                    (self.is_cut, self.is_left_out) = (false, false);
+                }
+                followed => return (row, followed.map(Some)),
+            }
+        }
+        (stamps.len(), Ok(None))
+    }
+
+    fn settle(&mut self, followed: Followed) {
+        match followed {
+            Followed::Repeated => self.is_left_out = true,
+            Followed::Row { at_s, missing } => self.decide(at_s, missing),
+            Followed::BehindTheEnd => {}
+        }
     }
 
     fn gap(&mut self, missing: u64) {

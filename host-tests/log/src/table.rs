@@ -44,6 +44,12 @@ pub(super) trait Visitor {
     /// of the next column.
     const BY_ROWS: bool = false;
 
+    /// Whether the visitor stops at the first value that is not a count.
+    const ONLY_COUNTS: bool = false;
+
+    /// What a stamp says of its row, where that is more than that it follows the row before.
+    type Followed;
+
     fn visit<F: Field>(&mut self, axis: usize, value: F) -> Result<(), Stop>;
 
     /// Receives at most [`RUN`] values of a column that follow each other. A visitor that overrides this is faster,
@@ -52,6 +58,23 @@ pub(super) trait Visitor {
     fn visit_run<F: Field>(&mut self, axis: usize, values: &[F]) -> Result<(), (usize, Stop)> {
         visit_each(self, axis, values)
     }
+
+    /// Whether the first column alone is the time, whose stamps may be shown before the other columns of their rows.
+    fn takes_stamps(&self) -> bool {
+        false
+    }
+
+    /// Receives stamps of rows that follow each other, as far as each follows the one before. Returns their number, and
+    /// what the next one says of its row, which [`Visitor::settle`] takes when the rows before it have been shown.
+    fn visit_stamps<F: Field>(
+        &mut self,
+        _stamps: &[F],
+    ) -> (usize, Result<Option<Self::Followed>, Stop>) {
+        (0, Ok(None))
+    }
+
+    /// Begins the row of a stamp.
+    fn settle(&mut self, _followed: Self::Followed) {}
 
     /// Tells that so many samples are missing before the next row, or an unknown number if it is 0.
     fn gap(&mut self, _missing: u64) {}

@@ -3,7 +3,7 @@
 //! The formats of tables are read by crates of other projects, which allocate what a file claims, and a few hundred bytes
 //! can claim gigabytes. The end of such a process is a message about the file, and not the end of the program.
 
-use super::rewrite::rewrite;
+use super::rewrite::{Written, rewrite};
 use crate::{
     failure::{Failure, Place},
     source::TableKind as Kind,
@@ -33,8 +33,8 @@ static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
 /// What the process answers on its standard output.
 #[derive(Serialize, Deserialize)]
 enum Answer {
-    /// The note about the table.
-    Written(Option<String>),
+    /// What was written.
+    Written(Written),
     /// What is wrong with it, and the remedy.
     Refused(String, String),
 }
@@ -52,20 +52,21 @@ pub fn answer() -> Option<ExitCode> {
         return None;
     }
     let asked: Vec<OsString> = arguments.collect();
-    let [kind, topic, path, text] = asked.as_slice() else {
+    let [kind, topic, path, text, values] = asked.as_slice() else {
         return Some(ExitCode::from(2));
     };
     let kind = Kind::ALL.into_iter().find(|known| *kind == *known.name());
     let (Some(kind), topic) = (kind, topic.to_string_lossy()) else {
         return Some(ExitCode::from(2));
     };
-    let (path, text) = (Path::new(path), Path::new(text));
+    let (path, text, values) = (Path::new(path), Path::new(text), Path::new(values));
     let size = path.metadata().map_or(0, |file| file.len());
     limit(size);
     // An empty topic is that of nobody, because no topic has an empty name.
     let topic = Some(&*topic).filter(|topic| !topic.is_empty());
-    let answer = match rewrite(path, kind, topic, text) {
-        Ok(note) => Answer::Written(note),
+    let values = Some(values).filter(|values| !values.as_os_str().is_empty());
+    let answer = match rewrite(path, kind, topic, (text, values)) {
+        Ok(written) => Answer::Written(written),
         Err(Failure::Input { what, remedy, .. }) => Answer::Refused(what, remedy),
         Err(_) => return Some(ExitCode::from(2)),
     };
@@ -103,21 +104,21 @@ pub(super) fn ask(
     path: &Path,
     kind: Kind,
     topic: Option<&str>,
-    text: &Path,
-) -> Option<Result<Option<String>, Failure>> {
+    (text, values): (&Path, Option<&Path>),
+) -> Option<Result<Written, Failure>> {
     let here = || Place::file(path);
     let asked = Command::new(PROGRAM.get()?)
         .arg(ASKED)
         .arg(kind.name())
         .arg(topic.unwrap_or_default())
-        .args([path, text])
+        .args([path, text, values.unwrap_or(Path::new(""))])
         .stdin(Stdio::null())
         .stderr(Stdio::null())
         .output()
         .ok()?;
     let answer = serde_json::from_slice(&asked.stdout);
     Some(match (asked.status.success(), answer) {
-        (true, Ok(Answer::Written(note))) => Ok(note),
+        (true, Ok(Answer::Written(written))) => Ok(written),
         (true, Ok(Answer::Refused(what, remedy))) => Err(here().failure(what, remedy)),
         _ => {
             let size = path.metadata().map_or(0, |file| file.len());

@@ -1,11 +1,10 @@
 //! Parquet and Arrow files, by the crates of the Arrow project.
 
-use super::wrong::Wrong;
-use crate::{converted::Text, source::TableKind as Kind};
+use super::{arrow_rows::Rows, wrong::Wrong};
+use crate::{converted::Text, source::TableKind as Kind, values::Layout};
 use ::arrow::{
     array::RecordBatch,
     compute::cast,
-    csv::WriterBuilder,
     datatypes::{DataType, TimeUnit},
     error::ArrowError,
     ipc::reader::{FileReader, StreamReader},
@@ -17,19 +16,13 @@ use std::{
     path::Path,
 };
 
-/// The format of stamps, as dates with nanoseconds.
-const STAMPS: &str = "%Y-%m-%dT%H:%M:%S%.9f";
-
-/// The format of times of day, with nanoseconds.
-const TIMES: &str = "%H:%M:%S%.9f";
-
 /// Rewrites the columns of numbers and stamps; those of a structure are named `STRUCTURE.FIELD`.
 pub(super) fn convert(
     path: &Path,
     kind: Kind,
     topic: Option<&str>,
-    text: &mut Text,
-) -> Result<Option<String>, Wrong> {
+    (text, values): (&mut Text, Option<Text>),
+) -> Result<Option<Layout>, Wrong> {
     if topic.is_some() {
         return Err(Wrong::unfit(
             "this kind of log has no topics",
@@ -54,11 +47,7 @@ pub(super) fn convert(
         }
         _ => Box::new(StreamReader::try_new(BufReader::new(file), None).map_err(Wrong::damaged)?),
     };
-    let builder = WriterBuilder::new()
-        .with_timestamp_format(STAMPS.into())
-        .with_time_format(TIMES.into());
-    let mut writer = builder.build(text);
-    let mut rows = 0;
+    let mut rows = Rows::new(text, values);
     for batch in batches {
         let batch = columns(&batch.map_err(Wrong::damaged)?).map_err(Wrong::damaged)?;
         if batch.num_columns() == 0 {
@@ -67,15 +56,11 @@ pub(super) fn convert(
                 "keep each axis in a column of its own, and write the table again",
             ));
         }
-        rows += batch.num_rows();
-        writer.write(&batch).map_err(|error| match error {
-            ArrowError::IoError(_, error) => Wrong::Io(error),
-            error => Wrong::damaged(error),
-        })?;
+        rows.push(batch)?;
     }
-    match rows {
+    match rows.count() {
         0 => Err(Wrong::unfit("no rows", "record some samples")),
-        _ => Ok(None),
+        _ => rows.finish(),
     }
 }
 

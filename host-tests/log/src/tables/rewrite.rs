@@ -5,6 +5,7 @@ use crate::{
     converted::Text,
     failure::{Failure, Place, one_line},
     source::TableKind as Kind,
+    values::Layout,
 };
 use std::{
     fs::File,
@@ -15,33 +16,46 @@ use std::{
 /// The remedy of a damaged file.
 const COPY: &str = "copy or record the file again";
 
-/// Writes the text of a table to a file, and returns a note about the table.
+/// What was written of a table: a note about it, and what the file of its numbers holds, if there is one.
+pub(super) type Written = (Option<String>, Option<Layout>);
+
+/// Writes the text of a table to a file, and its numbers to another one if that is given and the text would be long.
 pub(super) fn rewrite(
     path: &Path,
     kind: Kind,
     topic: Option<&str>,
-    text: &Path,
-) -> Result<Option<String>, Failure> {
+    (text, values): (&Path, Option<&Path>),
+) -> Result<Written, Failure> {
     let here = || Place::file(path);
     let size = path.metadata().map_or(0, |file| file.len());
-    let file = File::create(text).map_err(|error| here().io(&error))?;
-    let mut text = Text::to(path, size, file);
-    let convert = || match kind {
-        Kind::Ardupilot => ardupilot::convert(path, topic, &mut text),
-        Kind::Arrow | Kind::Parquet => arrow::convert(path, kind, topic, &mut text),
-        Kind::Betaflight => betaflight::convert(path, topic, &mut text),
-        Kind::Hdf5 => hdf5::convert(path, topic, &mut text),
-        Kind::Matlab => matlab::convert(path, topic, &mut text),
-        Kind::Workbook => workbook::convert(path, topic, &mut text),
+    let to = |file: &Path| {
+        let file = File::create(file).map_err(|error| here().io(&error))?;
+        Ok(Text::to(path, size, file))
+    };
+    let mut text = to(text)?;
+    let values = values.map(to).transpose()?;
+    let convert = || {
+        let note = match kind {
+            Kind::Arrow | Kind::Parquet => {
+                let layout = arrow::convert(path, kind, topic, (&mut text, values))?;
+                return Ok((None, layout));
+            }
+            Kind::Ardupilot => ardupilot::convert(path, topic, &mut text)?,
+            Kind::Betaflight => betaflight::convert(path, topic, &mut text)?,
+            Kind::Hdf5 => hdf5::convert(path, topic, &mut text)?,
+            Kind::Matlab => matlab::convert(path, topic, &mut text)?,
+            Kind::Workbook => workbook::convert(path, topic, &mut text)?,
+        };
+        Ok((note, None))
     };
     let converted = quietly(convert);
-    let note = converted.map_err(|wrong| match wrong {
+    let written = converted.map_err(|wrong| match wrong {
         Wrong::Io(error) => text.failure(&error),
         Wrong::Damaged(what) => here().failure(format!("damaged: {}", one_line(&what)), COPY),
         Wrong::Unfit(what, remedy) => here().failure(what, remedy),
     })?;
     text.finish()?;
-    Ok(note)
+    Ok(written)
 }
 
 /// Runs a reader of another project. Some of them panic at damaged files, which is reported like any other damage.

@@ -7,6 +7,7 @@ mod cases;
 mod hdf5;
 mod interpolated;
 mod layouts;
+mod long;
 mod measurements;
 mod origins;
 mod rounded;

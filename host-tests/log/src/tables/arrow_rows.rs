@@ -8,7 +8,7 @@ use crate::{
     values::{Kind, Layout, NumberWriter},
 };
 use ::arrow::{
-    array::{Array, ArrayRef, ArrowPrimitiveType, AsArray as _, RecordBatch, Scalar},
+    array::{Array, ArrayRef, AsArray as _, RecordBatch, Scalar},
     compute::kernels::cmp::distinct,
     csv::{Writer, WriterBuilder},
     datatypes::{
@@ -211,36 +211,24 @@ fn kind(column: &DataType) -> Option<Kind> {
 
 /// Adds the values of a column.
 fn append(column: &ArrayRef, bytes: &mut Vec<u8>) {
-    fn all<T: ArrowPrimitiveType, const SIZE: usize>(
-        column: &ArrayRef,
-        bytes: &mut Vec<u8>,
-        convert: impl Fn(T::Native) -> [u8; SIZE],
-    ) {
-        let values = column.as_primitive::<T>().values();
-        bytes.extend(values.iter().flat_map(|&value| convert(value)));
+    macro_rules! values {
+        ($type:ty as $written:ty) => {{
+            let values = column.as_primitive::<$type>().values().iter();
+            bytes.extend(values.flat_map(|&value| <$written>::from(value).to_ne_bytes()));
+        }};
     }
     match column.data_type() {
-        DataType::Int8 => all::<Int8Type, _>(column, bytes, |value| i32::from(value).to_ne_bytes()),
-        DataType::Int16 => {
-            all::<Int16Type, _>(column, bytes, |value| i32::from(value).to_ne_bytes())
-        }
-        DataType::Int32 => all::<Int32Type, _>(column, bytes, i32::to_ne_bytes),
-        DataType::UInt8 => {
-            all::<UInt8Type, _>(column, bytes, |value| i32::from(value).to_ne_bytes())
-        }
-        DataType::UInt16 => {
-            all::<UInt16Type, _>(column, bytes, |value| i32::from(value).to_ne_bytes())
-        }
-        DataType::UInt32 => {
-            all::<UInt32Type, _>(column, bytes, |value| i64::from(value).to_ne_bytes())
-        }
-        DataType::Int64 => all::<Int64Type, _>(column, bytes, i64::to_ne_bytes),
-        DataType::UInt64 => all::<UInt64Type, _>(column, bytes, u64::to_ne_bytes),
-        DataType::Float64 => all::<Float64Type, _>(column, bytes, f64::to_ne_bytes),
-        DataType::Timestamp(..) => {
-            all::<TimestampNanosecondType, _>(column, bytes, i64::to_ne_bytes)
-        }
-        DataType::Time64(_) => all::<Time64NanosecondType, _>(column, bytes, i64::to_ne_bytes),
+        DataType::Int8 => values!(Int8Type as i32),
+        DataType::Int16 => values!(Int16Type as i32),
+        DataType::Int32 => values!(Int32Type as i32),
+        DataType::UInt8 => values!(UInt8Type as i32),
+        DataType::UInt16 => values!(UInt16Type as i32),
+        DataType::UInt32 => values!(UInt32Type as i64),
+        DataType::Int64 => values!(Int64Type as i64),
+        DataType::UInt64 => values!(UInt64Type as u64),
+        DataType::Float64 => values!(Float64Type as f64),
+        DataType::Timestamp(..) => values!(TimestampNanosecondType as i64),
+        DataType::Time64(_) => values!(Time64NanosecondType as i64),
         _ => {}
     }
 }

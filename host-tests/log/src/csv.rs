@@ -170,7 +170,8 @@ impl Csv {
         let rows = self.first_records()?;
         let column = |column: usize| rows.iter().map(|row| number(row, column)).collect();
         let numbers: Vec<Vec<Option<f64>>> = (0..self.columns.looks.len()).map(column).collect();
-        let Some(turns) = source_marks::turns(&numbers) else {
+        let turns = source_marks::turns(&numbers);
+        let Some(turns) = turns.or_else(|| source_marks::turns_of_decimals(&rows)) else {
             return Ok(());
         };
         // A column that tells the sensors apart says more.

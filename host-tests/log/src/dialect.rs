@@ -59,6 +59,9 @@ impl Dialect {
     /// Values that are separated by commas.
     pub(super) const COMMAS: Self = Self::of(Separator::Byte(b','), false);
 
+    /// Values that are separated by blanks and tabs.
+    pub(super) const BLANKS: Self = Self::of(Separator::Blanks, false);
+
     /// The dialects that are tried. Of several that suit a text equally well, the first one is taken.
     const ALL: [Self; 7] = [
         Self::COMMAS,

@@ -26,6 +26,8 @@ pub(super) struct Glue {
     head: Option<Head>,
     tail: Option<Tail>,
     separator: u8,
+    /// What stands in front of each value, as the names of columns do where a plotter reads the rows. Empty if nothing does.
+    labels: Vec<Option<Vec<u8>>>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -52,6 +54,7 @@ impl Glue {
             head: None,
             tail: None,
             separator,
+            labels: Vec::new(),
         };
         let fields = |rows: &[Vec<u8>]| -> Vec<Vec<Vec<u8>>> {
             let records = rows.iter().map(|row| dialect.fields(row));
@@ -63,6 +66,10 @@ impl Glue {
         let mut rows: Vec<Vec<u8>> = rows.iter().map(|row| row.to_vec()).collect();
         let mut records = fields(&rows);
         records.retain(|record| record.len() == width);
+        if let Some(labels) = labels(&records, width) {
+            glue.labels = labels;
+            return Some(glue);
+        }
         glue.head = head(&records);
         if glue.head.is_some() {
             rows = rows.iter().filter_map(|row| glue.cut(row)).collect();
@@ -78,9 +85,28 @@ impl Glue {
         (!is_labelled && (glue.head.is_some() || glue.tail.is_some())).then_some(glue)
     }
 
+    /// The labels of values that blanks separate. Without a number, no dialect tells them.
+    pub(super) fn of_labels(rows: &[&[u8]]) -> Option<Self> {
+        let dialect = Dialect::BLANKS;
+        let record = |row: &&[u8]| -> Vec<Vec<u8>> {
+            dialect.fields(row).iter().map(<[u8]>::to_vec).collect()
+        };
+        let records: Vec<Vec<Vec<u8>>> = rows.iter().map(record).collect();
+        let width = records.last()?.len();
+        Some(Self {
+            head: None,
+            tail: None,
+            separator: dialect.separator_of_points()?,
+            labels: labels(&records, width)?,
+        })
+    }
+
     /// The values of a row, or `None` if it has another shape. A time in front of what is no number becomes the name of its
     /// column, because the names of columns follow.
     pub(super) fn cut(&self, row: &[u8]) -> Option<Vec<u8>> {
+        if !self.labels.is_empty() {
+            return self.cut_labels(row);
+        }
         let row = self.cut_tail(row)?;
         let row = row.trim_ascii_start();
         match &self.head {
@@ -98,6 +124,37 @@ impl Glue {
                 Some([stamp, &[self.separator], rest].concat())
             }
         }
+    }
+
+    /// The values of a row behind their labels.
+    fn cut_labels(&self, row: &[u8]) -> Option<Vec<u8>> {
+        let is_blank = self.separator == b' ';
+        let is_separator = |byte: &u8| match is_blank {
+            true => byte.is_ascii_whitespace(),
+            false => *byte == self.separator,
+        };
+        let fields = row.split(is_separator).map(<[u8]>::trim_ascii);
+        let mut fields = fields.filter(|field| !is_blank || !field.is_empty());
+        let mut values = Vec::new();
+        for label in &self.labels {
+            let field = fields.next()?;
+            let value = match label {
+                Some(label) => field.strip_prefix(label.trim_ascii())?.trim_ascii(),
+                None => field,
+            };
+            values.push(value);
+        }
+        let is_whole = fields.next().is_none();
+        is_whole.then(|| values.join(&self.separator))
+    }
+
+    /// The names that the labels are.
+    pub(super) fn labels(&self) -> Option<Vec<String>> {
+        let name = |label: &Option<Vec<u8>>| {
+            let text = String::from_utf8_lossy(label.as_deref().unwrap_or_default());
+            text.trim_end_matches([':', '=', ' ', '\t']).to_owned()
+        };
+        (!self.labels.is_empty()).then(|| self.labels.iter().map(name).collect())
     }
 
     fn cut_tail(&self, row: &[u8]) -> Option<Vec<u8>> {
@@ -124,6 +181,12 @@ impl Glue {
 
     /// What was cut off, in words.
     pub(super) fn said(&self) -> String {
+        if let Some(label) = self.labels.iter().flatten().next() {
+            let label = quoted(label.trim_ascii());
+            return format!(
+                "labels such as {label} before the values are the names of the columns"
+            );
+        }
         let head = self.head.as_ref().map(|head| match head {
             Head::Same(text) => format!("{} before its values", quoted(text)),
             Head::Stamp { before, behind } if before.is_empty() => {
@@ -142,6 +205,24 @@ impl Glue {
         let parts: Vec<String> = head.into_iter().chain(tail).collect();
         format!("cut off each row: {}", parts.join(", "))
     }
+}
+
+/// What stands in front of each value, if that is the same on nearly all rows, and different for each value.
+fn labels(records: &[Vec<Vec<u8>>], width: usize) -> Option<Vec<Option<Vec<u8>>>> {
+    let of_column = |column: usize| {
+        let fields = records.iter().filter_map(|record| record.get(column));
+        let labels = fields.map(|field| split(field).map(|(label, _)| label.to_vec()));
+        let labels: Vec<Option<Vec<u8>>> = labels.collect();
+        let last = labels.last()?;
+        let alike = labels.iter().filter(|label| *label == last).count();
+        are_nearly_all(alike, records.len()).then(|| last.clone())
+    };
+    let labels: Vec<Option<Vec<u8>>> = (0..width).map(of_column).collect::<Option<_>>()?;
+    let different: BTreeSet<&Vec<u8>> = labels.iter().flatten().collect();
+    let number = labels.iter().flatten().count();
+    let is_named = |label: &&Vec<u8>| label.iter().any(u8::is_ascii_alphabetic);
+    let are_labels = number > 1 && different.len() == number && different.iter().all(is_named);
+    are_labels.then_some(labels)
 }
 
 fn begins_number(byte: &u8) -> bool {
@@ -253,8 +334,12 @@ fn tail(records: &[Vec<Vec<u8>>]) -> Option<Tail> {
 mod tests {
     use super::*;
 
-    /// The values of three rows in which `X` stands for a number and `T` for a time.
     fn cut(pattern: &str) -> Option<(Vec<String>, String)> {
+        glued(pattern).map(|(rows, glue)| (rows, glue.said()))
+    }
+
+    /// The values of three rows in which `X` stands for a number and `T` for a time, and what is cut off.
+    fn glued(pattern: &str) -> Option<(Vec<String>, Glue)> {
         let row = |i: usize| {
             let number = ["-0.25", "1.5", "0.125"][i];
             let time = ["12:30:00.000", "12:30:00.010", "12:30:00.020"][i];
@@ -266,9 +351,9 @@ mod tests {
         let rows: Vec<String> = (0..3).map(row).collect();
         let rows: Vec<&[u8]> = rows.iter().map(|row| row.as_bytes()).collect();
         let (dialect, width) = Dialect::of_rows(&rows);
-        let glue = Glue::of_rows(&rows, dialect, width)?;
+        let glue = Glue::of_rows(&rows, dialect, width).or_else(|| Glue::of_labels(&rows))?;
         let text = |row: &&[u8]| String::from_utf8(glue.cut(row).unwrap()).unwrap();
-        Some((rows.iter().map(text).collect(), glue.said()))
+        Some((rows.iter().map(text).collect(), glue))
     }
 
     #[test]
@@ -317,12 +402,28 @@ mod tests {
         }
     }
 
+    /// The serial plotter of Arduino reads rows of labels and values.
     #[test]
-    fn rows_of_plain_values_labels_and_numbers_of_sensors_are_left_alone() {
+    fn labels_of_values_are_the_names_of_columns() {
+        for (pattern, first, names) in [
+            ("x:X,y:X,z:X", "-0.25,-0.25,-0.25", "x,y,z"),
+            ("t=ms gx=X gy=X", "312 -0.25 -0.25", "t,gx,gy"),
+            ("ms,gx: X, gy: X", "312,-0.25,-0.25", ",gx,gy"),
+        ] {
+            let (rows, found) = glued(pattern).unwrap_or_else(|| panic!("{pattern}"));
+            let said = found.said();
+            assert_eq!(rows[0], first, "{pattern}");
+            assert!(said.starts_with("labels such as "), "{said}");
+            let labels = found.labels().unwrap();
+            assert_eq!(labels.join(","), names, "{pattern}");
+        }
+    }
+
+    #[test]
+    fn rows_of_plain_values_and_numbers_of_sensors_are_left_alone() {
         for pattern in [
             "X,2,3",
             "T,X,2",
-            "x:X,y:X,z:X",
             "$IMU,X,2",
             "sensor 1,X,2",
             "X,2,3dps",

@@ -126,8 +126,13 @@ impl Preamble {
         {
             let found = dialect.names(comment.as_bytes(), width);
             let is_name = |name: &String| Kind::of(name.as_bytes()) == Kind::Text;
-            names = found.filter(|names| names.iter().all(is_name));
+            // A separator may stand behind the last name.
+            names = found.filter(|names| match names.as_slice() {
+                [names @ .., last] if last.is_empty() => names.iter().all(is_name),
+                names => names.iter().all(is_name),
+            });
         }
+        names = names.or_else(|| glue.as_ref()?.labels());
         let has_names = names.is_some();
         for line in preamble {
             let record = dialect.fields(&line.bytes);
@@ -182,7 +187,7 @@ fn cut(lines: &mut [Line]) -> Option<Glue> {
     let rows = || lines.iter().filter(|line| line.comment().is_none());
     let judges: Vec<&[u8]> = rows().rev().take(JUDGES).map(|line| &*line.bytes).collect();
     let (dialect, width) = Dialect::of_rows(&judges);
-    let glue = Glue::of_rows(&judges, dialect, width)?;
+    let glue = Glue::of_rows(&judges, dialect, width).or_else(|| Glue::of_labels(&judges))?;
     for line in lines.iter_mut().filter(|line| line.comment().is_none()) {
         if let Some(bytes) = glue.cut(&line.bytes) {
             line.bytes = bytes;

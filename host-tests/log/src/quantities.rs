@@ -16,6 +16,10 @@ use std::{ops::Range, path::Path};
 /// Gravity in g, in m/s² and in thousandths of g.
 const GRAVITIES: [Range<f64>; 3] = [0.95..1.05, 9.3..10.3, 950.0..1050.0];
 
+/// Gravity in counts of 16 bits over ranges of 2, 4, 8 and 16 g, and how far from it an accelerometer without calibration may be.
+const COUNTS_OF_GRAVITY: [f64; 4] = [16_384.0, 8192.0, 4096.0, 2048.0];
+const UNCALIBRATED: f64 = 0.03;
+
 /// The length of gravity scatters by at most this share of it, and that of a quaternion. Chosen by hand.
 const SCATTERS: (f64, f64) = (0.06, 1e-4);
 
@@ -99,7 +103,7 @@ impl Columns {
 
     /// Shows what is in columns one behind the other, among which there is no quaternion.
     fn show_run(&self, run: &[usize], shown: &mut Shown) {
-        let felt = run.windows(3).filter(|three| self.gravity(three).is_some());
+        let felt = run.windows(3).filter(|three| self.feel_gravity(three));
         let felt: Vec<usize> = felt.map(|three| three[0]).collect();
         let mut rest = run;
         for overlapping in felt.chunk_by(|one, other| other - one < 3) {
@@ -135,11 +139,19 @@ impl Columns {
             .extend(rest.iter().copied().filter(|&column| self.is_open(column)));
     }
 
-    /// The unit, as a place in [`GRAVITIES`], in which three columns feel gravity.
-    fn gravity(&self, three: &[usize]) -> Option<usize> {
-        let (mean, scatter) = self.length(three)?;
-        let unit = GRAVITIES.iter().position(|range| range.contains(&mean))?;
-        (scatter < SCATTERS.0 * mean).then_some(unit)
+    /// Whether three columns feel gravity, in a unit or in counts.
+    fn feel_gravity(&self, three: &[usize]) -> bool {
+        let Some((mean, scatter)) = self.length(three) else {
+            return false;
+        };
+        let is_near = |gravity: &f64| (mean / gravity - 1.0).abs() < UNCALIBRATED;
+        let are_counts = || {
+            let mut numbers = three.iter().flat_map(|&column| self.head(column));
+            numbers.all(|number| number.fract() == 0.0)
+        };
+        let is_gravity = GRAVITIES.iter().any(|range| range.contains(&mean))
+            || (COUNTS_OF_GRAVITY.iter().any(is_near) && are_counts());
+        is_gravity && scatter < SCATTERS.0 * mean
     }
 
     fn is_quaternion(&self, four: &[usize]) -> bool {

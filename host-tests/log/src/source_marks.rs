@@ -4,6 +4,7 @@
 //! marks differ by more than chance, whereas those beside a flag, an index of packets or a coarse temperature do not. Only
 //! neighbours are compared, so that no drift counts. Marks come in an order that the marks before them foretell.
 
+use super::field::{Field as _, Text};
 use csv::ByteRecord;
 use std::collections::BTreeMap;
 
@@ -82,6 +83,66 @@ pub(super) fn turns(numbers: &[Vec<Option<f64>>]) -> Option<usize> {
         };
         columns.iter().filter(differs).count() >= 2
     })
+}
+
+/// The fewest rows whose decimals are compared.
+const DECIMALS: usize = 32;
+
+/// The number of rows after which these come again, if they take turns between sensors whose values have other numbers of decimals: 2
+/// or 3.
+pub(super) fn turns_of_decimals(rows: &[ByteRecord]) -> Option<usize> {
+    let rows = &rows[..rows.len().min(TURN_ROWS)];
+    let decimals = |row: &ByteRecord, column: usize| {
+        let field = row.get(column)?.trim_ascii();
+        let point = field.iter().position(|&byte| byte == b'.')?;
+        let digits = &field[point + 1..];
+        digits
+            .iter()
+            .all(u8::is_ascii_digit)
+            .then_some(digits.len())
+    };
+    [2, 3].into_iter().find(|&turns| {
+        let take_turns = |column: &usize| {
+            let own = |row: usize| decimals(&rows[row], *column);
+            let is_own =
+                (0..rows.len()).all(|row| own(row).is_some() && own(row) == own(row % turns));
+            is_own && (1..turns).any(|row| own(row) != own(0))
+        };
+        let width = rows.first().map_or(0, ByteRecord::len);
+        rows.len() >= DECIMALS && (0..width).filter(take_turns).count() >= 2
+    })
+}
+
+/// The ratio of noises, and the step between means in deviations, beyond which the rows on both sides of a change are those of other
+/// sensors, in at least two columns; and the fewest rows on each side. Chosen by hand.
+const UNLIKE: (f64, f64) = (3.0, 20.0);
+const LEAST_BESIDE: usize = 16;
+
+/// Whether the rows before a change and those behind it are unlike each other, as those of two sensors are.
+pub(super) fn are_unlike(before: &[ByteRecord], behind: &[ByteRecord]) -> bool {
+    let statistics = |rows: &[ByteRecord], column: usize| {
+        let numbers = rows.iter().map(|row| Text(row.get(column)?).number().ok());
+        let numbers: Vec<Option<f64>> = numbers.collect();
+        if is_time(&numbers) {
+            return None;
+        }
+        let numbers = numbers.into_iter().collect::<Option<Vec<f64>>>()?;
+        let count = numbers.len() as f64;
+        let mean = numbers.iter().sum::<f64>() / count;
+        let steps = numbers.windows(2).map(|pair| (pair[1] - pair[0]).powi(2));
+        Some((mean, (0.5 * steps.sum::<f64>() / (count - 1.0)).sqrt()))
+    };
+    let is_unlike = |column: &usize| {
+        let (Some((one, noise)), Some((other, beside))) =
+            (statistics(before, *column), statistics(behind, *column))
+        else {
+            return false;
+        };
+        let (least, most) = (noise.min(beside), noise.max(beside));
+        least > 0.0 && (most > UNLIKE.0 * least || (one - other).abs() > UNLIKE.1 * most)
+    };
+    let width = before.first().map_or(0, ByteRecord::len);
+    before.len().min(behind.len()) >= LEAST_BESIDE && (0..width).filter(is_unlike).count() >= 2
 }
 
 /// Whether values rise as a time does.

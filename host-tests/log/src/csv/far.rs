@@ -7,6 +7,7 @@ use crate::{
     names,
     records::Records,
     regular_file::{self, RegularFile},
+    source_marks,
 };
 use csv::ByteRecord;
 use std::io::{BufRead as _, BufReader, Read as _, Seek as _, SeekFrom};
@@ -89,12 +90,14 @@ impl Csv {
             {
                 continue;
             }
-            let Some([before, behind]) = self.change(column, &mark, length) else {
+            let Some((rows, at)) = self.change(column, &mark, length) else {
                 continue;
             };
-            let goes_back = |time: usize| self.goes_back(time, first, [&before, &behind]);
-            let mut times = (0..self.columns.looks.len()).filter(|time| self.is_time(*time));
-            if !times.any(goes_back) {
+            let (before, behind) = (&rows[at - 1], &rows[at]);
+            let goes_back = |time: usize| self.goes_back(time, first, [before, behind]);
+            let mut times = (0..self.columns.looks.len()).filter(|time| self.is_time(*time, first));
+            // Where no stamps go back, the values may tell.
+            if !times.any(goes_back) && !source_marks::are_unlike(&rows[..at], &rows[at..]) {
                 continue;
             }
             let called = self
@@ -129,9 +132,16 @@ impl Csv {
         behind < before || is_anew
     }
 
-    fn is_time(&self, column: usize) -> bool {
+    /// Whether a column is a time, which may begin anew among the first rows.
+    fn is_time(&self, column: usize, first: &[ByteRecord]) -> bool {
+        let rises = || {
+            let numbers: Vec<f64> = first.iter().filter_map(|row| number(row, column)).collect();
+            let rising = numbers.windows(2).filter(|pair| pair[1] >= pair[0]).count();
+            10 * rising > 9 * first.len()
+        };
         self.columns.looks[column] == Look::Rising
             || self.columns.name(column).is_some_and(names::is_time)
+            || rises()
     }
 
     /// The mark that stands in a column of all of the first rows.
@@ -148,8 +158,8 @@ impl Csv {
         (is_mark && !mark.is_empty() && first.iter().all(is_alike)).then_some(mark)
     }
 
-    /// The last row with a mark in a column and the row behind it, if the rows with the mark stand one behind the other.
-    fn change(&self, column: usize, mark: &[u8], length: u64) -> Option<[ByteRecord; 2]> {
+    /// Rows about the end of those with a mark in a column, if these stand one behind the other, and the place of the first without it.
+    fn change(&self, column: usize, mark: &[u8], length: u64) -> Option<(Vec<ByteRecord>, usize)> {
         let (mut low, mut high) = (self.start, length);
         let is_of_mark = |row: &ByteRecord| row[column].trim_ascii() == mark;
         while high - low > PROBE / 2 {
@@ -159,10 +169,11 @@ impl Csv {
                 _ => high = middle,
             }
         }
-        let rows = self.records_at(low.saturating_sub(1), 2 * PROBE);
+        let from = low.saturating_sub(PROBE).max(self.start);
+        let rows = self.records_at(from.saturating_sub(1), 3 * PROBE);
         let at = rows
             .windows(2)
             .position(|pair| is_of_mark(&pair[0]) && !is_of_mark(&pair[1]))?;
-        Some([rows[at].clone(), rows[at + 1].clone()])
+        Some((rows, at + 1))
     }
 }

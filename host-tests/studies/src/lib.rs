@@ -27,6 +27,7 @@ pub mod paper;
 pub mod peers;
 mod periodogram;
 pub mod precision;
+pub mod processes;
 pub mod resources;
 pub mod rounding;
 pub mod said;

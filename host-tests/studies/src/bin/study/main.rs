@@ -371,6 +371,9 @@ enum Study {
         /// Print JSON instead of a table
         #[arg(long)]
         json: bool,
+        /// Instead, time whole logs with this program, such as target/release/allanite, beside pyarrow, polars and numpy
+        #[arg(long)]
+        program: Option<PathBuf>,
     },
     /// Compare single with double precision on the same records
     Precision {
@@ -528,7 +531,14 @@ fn main() -> Result<()> {
             preset,
             json,
         } => efficiency::print(records, preset, json)?,
-        Study::Speed { samples, json } => speed::print(samples as usize, json)?,
+        Study::Speed {
+            samples,
+            json,
+            program,
+        } => match program {
+            Some(program) => speed::print_processes(&program, json)?,
+            None => speed::print(samples as usize, json)?,
+        },
         Study::Precision { records } => precision::print(records)?,
         Study::Coefficients { records, tolerance } => coefficients::print(records, tolerance),
     }

@@ -103,7 +103,12 @@ impl Columns {
             };
             all.clone().filter(is).collect()
         };
-        let by_name = named(&|name| axis_names::is_axis(name, sensor));
+        let mut by_name = named(&|name| axis_names::is_axis(name, sensor));
+        // Increments of an angle beside rates say the same once more.
+        let is_rate = |column: &usize| !self.name(*column).is_some_and(names::is_increment);
+        if by_name.iter().any(is_rate) {
+            by_name.retain(is_rate);
+        }
         let any = [Sensor::Gyro, Sensor::Accelerometer];
         let none_is_named = || {
             any.iter()

@@ -36,6 +36,8 @@ pub(super) fn is_time(name: &str) -> bool {
         .iter()
         .any(|word| name.contains(word))
         || first == "t"
+        // The time of the week of GPS.
+        || first == "tow"
         || TimeUnit::of_token(first).is_some()
 }
 
@@ -119,6 +121,9 @@ pub(super) fn is_increment(name: &str) -> bool {
         "dtheta",
         "deltatheta",
         "dangle",
+        "dangx",
+        "dangy",
+        "dangz",
         "angleincrement",
         "incrementofangle",
     ]

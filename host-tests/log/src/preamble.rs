@@ -92,6 +92,7 @@ impl Preamble {
             .iter()
             .filter(|line| line.offset < first_offset)
             .collect();
+        let said_above = comment.clone();
         let mut last_comment = comment.filter(|_| first == 0);
         for line in &above {
             last_comment = line.comment();
@@ -106,9 +107,11 @@ impl Preamble {
         {
             preamble.pop();
             names = Some(found);
-            let above = preamble
-                .last()
-                .and_then(|line| dialect.names(&line.bytes, width));
+            // The names may stand in a comment.
+            let of_comment = || said_above.as_deref().map(str::as_bytes);
+            let above = preamble.last().map(|line| &*line.bytes);
+            let above = above.or_else(of_comment);
+            let above = above.and_then(|line| dialect.names(line, width));
             if let (Some(units), Some(above)) = (&names, above)
                 && unit_names::are_units(units)
             {

@@ -75,14 +75,29 @@ pub(super) fn turns(numbers: &[Vec<Option<f64>>]) -> Option<usize> {
         .map(|values| &values[..values.len().min(TURN_ROWS)]);
     let columns: Vec<&[Option<f64>]> = columns.filter(|values| !is_time(values)).collect();
     [2, 3].into_iter().find(|&turns| {
-        let differs = |values: &&&[Option<f64>]| {
-            let marks: Vec<u64> = (0..values.len()).map(|row| (row % turns) as u64).collect();
-            let differences = (1..turns as u64)
-                .filter_map(|mark| difference_of_means(&marks, values, [mark - 1, mark]));
-            differences.fold(0.0, f64::max) > TURNS
-        };
+        let differs = |values: &&&[Option<f64>]| turn(values, turns) > TURNS;
         columns.iter().filter(differs).count() >= 2
     })
+}
+
+/// The largest square of the mean step from a row to the next one at a place among turns, less the mean step of all, in its standard
+/// deviations. A quantity that rises steadily has the same step at every place.
+fn turn(values: &[Option<f64>], turns: usize) -> f64 {
+    let at_place = |place: usize| {
+        let pairs = values.windows(2).skip(place).step_by(turns);
+        let steps: Vec<f64> = pairs.filter_map(|pair| Some(pair[1]? - pair[0]?)).collect();
+        let count = steps.len() as f64;
+        let mean = steps.iter().sum::<f64>() / count;
+        let squares: f64 = steps.iter().map(|step| (step - mean).powi(2)).sum();
+        let is_noise = steps.len() >= LEAST_PAIRS && squares > 0.0;
+        is_noise.then(|| (mean, squares / (count * (count - 1.0))))
+    };
+    let places: Vec<(f64, f64)> = (0..turns).filter_map(at_place).collect();
+    let drift = places.iter().map(|(mean, _)| mean).sum::<f64>() / places.len() as f64;
+    let squares = places
+        .iter()
+        .map(|(mean, variance)| (mean - drift).powi(2) / variance);
+    squares.fold(0.0, f64::max)
 }
 
 /// The fewest rows whose decimals are compared.
@@ -283,7 +298,14 @@ mod tests {
             let columns = [time.clone(), column(turns, 3.0), column(turns, -4.0)];
             assert_eq!(super::turns(&columns), Some(turns));
         }
-        let columns = [time, column(2, 0.0), column(2, 0.0)];
+        let columns = [time.clone(), column(2, 0.0), column(2, 0.0)];
+        assert_eq!(super::turns(&columns), None);
+        // Angles of a sensor that turns.
+        let mut angle = |rate: f64| -> Vec<Option<f64>> {
+            let value = |row: usize| Some(rate * row as f64 + 1e-3 * noise(&mut state));
+            (0..600).map(value).collect()
+        };
+        let columns = [time, angle(0.1), angle(-0.2)];
         assert_eq!(super::turns(&columns), None);
     }
 

@@ -61,6 +61,15 @@ impl Columns {
             name.contains("header.stamp") || name.contains("timestamp_sample") || name == "TimeUS"
         };
         by_name.sort_by_key(|column| !is_sensors(column));
+        // A temperature may be called T.
+        let rises = |column: &usize| {
+            let head = &self.heads[*column];
+            let rising = head.windows(2).filter(|pair| pair[1] >= pair[0]).count();
+            self.looks[*column] != Look::Number || 10 * (rising + 1) >= 8 * head.len()
+        };
+        if by_name.iter().any(rises) {
+            by_name.retain(rises);
+        }
         // Dates and times are often coarser than a number beside them.
         let dates = (0..count).filter(|&column| self.looks[column] == Look::Date);
         by_name.retain(|&column| self.looks[column] != Look::Date);

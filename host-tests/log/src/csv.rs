@@ -36,6 +36,9 @@ const LOOKS: usize = 100;
 /// them, are shorter than a quarter of them. Chosen by hand.
 const MARKED: usize = 1024;
 
+/// The bytes of the rows that are looked at, of which a long row has many.
+const MOST_BYTES: usize = 1 << 20;
+
 /// A log of text whose first rows are known.
 pub(super) struct Csv {
     /// The file that messages name.
@@ -233,7 +236,8 @@ impl Csv {
         let text = self.rows(&ProgressBar::hidden())?;
         let mut reader = Records::new(text, self.start, self.dialect.delimiter());
         let mut records: Vec<ByteRecord> = Vec::new();
-        while records.len() < MARKED {
+        let mut bytes = 0;
+        while records.len() < MARKED && bytes < MOST_BYTES {
             if !reader.read().map_err(|error| self.failure(error))? {
                 break;
             }
@@ -248,7 +252,9 @@ impl Csv {
             {
                 break;
             }
-            records.push(row.clone());
+            bytes += row.as_slice().len();
+            // A clone would have room for the longest row so far.
+            records.push(row.iter().collect());
         }
         Ok(records)
     }

@@ -49,7 +49,9 @@ enum Tail {
 impl Glue {
     /// What is around the values of these rows, if it has the same shape on nearly all of them.
     pub(super) fn of_rows(rows: &[&[u8]], dialect: Dialect, width: usize) -> Option<Self> {
-        let separator = dialect.separator_of_points()?;
+        let separator = dialect
+            .separator_of_points()
+            .filter(|_| width <= MOST_FIELDS)?;
         let mut glue = Self {
             head: None,
             tail: None,
@@ -58,6 +60,7 @@ impl Glue {
         };
         let fields = |rows: &[Vec<u8>]| -> Vec<Vec<Vec<u8>>> {
             let records = rows.iter().map(|row| dialect.fields(row));
+            let records = records.filter(|record| record.len() <= MOST_FIELDS);
             let own = |record: csv::ByteRecord| -> Vec<Vec<u8>> {
                 record.iter().map(|one| one.trim_ascii().to_vec()).collect()
             };
@@ -88,11 +91,14 @@ impl Glue {
     /// The labels of values that blanks separate. Without a number, no dialect tells them.
     pub(super) fn of_labels(rows: &[&[u8]]) -> Option<Self> {
         let dialect = Dialect::BLANKS;
-        let record = |row: &&[u8]| -> Vec<Vec<u8>> {
-            dialect.fields(row).iter().map(<[u8]>::to_vec).collect()
-        };
-        let records: Vec<Vec<Vec<u8>>> = rows.iter().map(record).collect();
-        let width = records.last()?.len();
+        let width = dialect.fields(rows.last()?).len();
+        if width > MOST_FIELDS {
+            return None;
+        }
+        let records = rows.iter().map(|row| dialect.fields(row));
+        let records = records.filter(|record| record.len() == width);
+        let own = |record: csv::ByteRecord| record.iter().map(<[u8]>::to_vec).collect();
+        let records: Vec<Vec<Vec<u8>>> = records.map(own).collect();
         Some(Self {
             head: None,
             tail: None,
@@ -239,6 +245,9 @@ fn are_brackets(text: &[u8]) -> bool {
     let text = text.trim_ascii();
     !text.is_empty() && text.iter().all(|byte| b"[({<".contains(byte))
 }
+
+/// Rows of more fields are refused anyway.
+const MOST_FIELDS: usize = 256;
 
 /// The longest field that is looked at: each place of it may begin a number.
 const LONGEST: usize = 256;

@@ -13,8 +13,9 @@
 //!   `.txt` behind its name may contain the same comments.
 //! * Bags of ROS 2 (MCAP, SQLite, or a folder of them) and of ROS 1, with a topic of `sensor_msgs/msg/Imu`.
 //!   The stamps are those of the messages' headers. One chunk is in memory at a time.
-//! * Parquet, Arrow, workbooks, arrays of MATLAB and HDF5, and flight logs of ArduPilot and Betaflight, which are rewritten as
-//!   text first. In a file with several tables, the longest one is taken, or that of [`Options::topic`].
+//! * Parquet and Arrow, whose numbers are read as they are; and workbooks, arrays of MATLAB and HDF5, and flight logs of ArduPilot
+//!   and Betaflight, which are rewritten as text first. In a file with several tables, the longest one is taken, or that of
+//!   [`Options::topic`].
 //! * `.ulg`: a log of PX4 with `sensor_gyro`, `sensor_accel`, `sensor_combined` or `vehicle_imu`.
 //!
 //! # Which columns are axes

@@ -32,7 +32,7 @@ pub(super) fn is_time(name: &str) -> bool {
         return false;
     }
     let first = tokens(&name).next().unwrap_or_default();
-    ["time", "stamp", "zeit", "elapsed", "epoch"]
+    ["time", "stamp", "zeit", "elapsed", "epoch", "gps seconds", "gps_seconds"]
         .iter()
         .any(|word| name.contains(word))
         || first == "t"

@@ -58,7 +58,8 @@ impl Csv {
         while let Ok(true) = reader.read() {
             let row = reader.row();
             if row.len() == self.columns.looks.len() {
-                records.push(row.clone());
+                // A clone would have room for the longest row so far.
+                records.push(row.iter().collect());
             }
         }
         // The last line may be the beginning of one.
@@ -146,13 +147,15 @@ impl Csv {
 
     /// The mark that stands in a column of all of the first rows.
     fn only_mark(&self, first: &[ByteRecord], column: usize) -> Option<Vec<u8>> {
-        let mark = first.first()?[column].trim_ascii().to_vec();
-        let is_alike = |row: &ByteRecord| row[column].trim_ascii() == mark.as_slice();
+        let mark = first.first()?.get(column)?.trim_ascii().to_vec();
+        let is_alike =
+            |row: &ByteRecord| row.get(column).map(<[u8]>::trim_ascii) == Some(mark.as_slice());
         let is_mark = match self.columns.looks[column] {
             Look::Text => true,
-            Look::Number => {
-                number(&first[0], column).is_some_and(|number| number.abs() < MOST_NUMBER)
-            }
+            Look::Number => first
+                .first()
+                .and_then(|row| number(row, column))
+                .is_some_and(|number| number.abs() < MOST_NUMBER),
             Look::Rising | Look::Date => false,
         };
         (is_mark && !mark.is_empty() && first.iter().all(is_alike)).then_some(mark)

@@ -1,5 +1,6 @@
 //! Tables of other programs in binary. Each is rewritten as the text that logs are read from, in a temporary file, so that
-//! names, units, stamps and values are judged in one place.
+//! names, units, stamps and values are judged in one place. Of a long table in columns, only the rows that tell these are text, and
+//! its numbers stand beside it in binary.
 
 pub(crate) mod apart;
 mod ardupilot;

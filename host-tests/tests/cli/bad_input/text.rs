@@ -126,6 +126,8 @@ pub(crate) fn cases() -> Vec<Case> {
         "# words\n".repeat(1 << 20) => "no rows";
         "1 2;3,4\t5 ".repeat(5000) + "\n" => "columns, more than 256";
         after("# door opened\n1,2,3") => "a comment among the rows";
+        // What is kept of the rows behind a long one is no longer than they are.
+        format!("{}{}1\n{}# door opened\n1,2,3\n", self::good(20), "1,".repeat(30_000), rows(2000)) => "a comment among the rows";
         after("# lost 99999999999999999999999 samples\n1,2,3") => "a comment among the rows";
         after("# \u{1b}[2J\n1,2,3") => "a comment among the rows";
         "H Product:Blackbox\n".into() => "no log with numbers";

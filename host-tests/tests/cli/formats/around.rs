@@ -65,6 +65,16 @@ fn characters_that_are_glued_to_every_row_cost_no_axis() {
             "\"I (\" and \") icm6050: \" around the time",
         ),
         ("T -> x,y,z;", Options::default(), "\";\" behind them"),
+        (
+            "GX:x,GY:y,GZ:z",
+            told.clone(),
+            "labels such as \"GX:\" before the values are the names",
+        ),
+        (
+            "t_ms=M GX=x GY=y GZ=z",
+            Options::default(),
+            "labels such as \"t_ms=\" before the values",
+        ),
         ("x,y,z;", told.clone(), "\";\" behind them"),
         ("x,y,z*C", told.clone(), "a checksum behind them"),
         (
@@ -87,7 +97,10 @@ fn characters_that_are_glued_to_every_row_cost_no_axis() {
         let log = read_text(&text, &options).unwrap_or_else(|line| panic!("{pattern}: {line}"));
         assert_values(&log, &values, pattern);
         let notes = log.notes.join("\n");
-        let is_said = |note: &str| note.starts_with("cut off each row: ") && note.contains(words);
+        let is_of_rows = |note: &str| {
+            note.starts_with("cut off each row: ") || note.starts_with("labels such as ")
+        };
+        let is_said = |note: &str| is_of_rows(note) && note.contains(words);
         assert!(notes.lines().any(is_said), "{pattern}: {notes}");
     }
 }

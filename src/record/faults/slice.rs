@@ -142,7 +142,7 @@ mod tests {
                     let count = offset + fine;
                     before = match next() % 50 {
                         0 => before,
-                        1 => i32::MAX.min(offset + 6 * size),
+                        1 => offset + 6 * size,
                         _ => count,
                     };
                     before

@@ -1,9 +1,10 @@
 //! The bulk path of the faults: it takes many counts at once and leads to the same state.
 
-use super::{SampleFaults, ends::End, steps::FAR};
-
-/// The number of counts that are taken together.
-pub(super) const CHUNK: usize = 64;
+use super::{
+    SampleFaults,
+    ends::End,
+    steps::{CHUNK, FAR},
+};
 
 impl SampleFaults {
     /// Adds counts, and tells of each how many steps it is away from the one before, as [`push`](Self::push) does; 4 behind a gap.

@@ -1,6 +1,6 @@
 //! The sums from which the mean and the variance of the values follow.
 
-use super::slice::CHUNK;
+use super::steps::CHUNK;
 
 /// Sums of the values, relative to the first one.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -1,6 +1,7 @@
 //! Differences of neighbours in steps of the numbers: how many are zero, one, two and three steps long.
 
-use super::slice::CHUNK;
+/// The number of counts that are taken together.
+pub(super) const CHUNK: usize = 64;
 
 /// The number of differences from which the usual one is learnt.
 const LEARNT: u16 = 256;

@@ -303,8 +303,8 @@ where
         self.push_slices_as(counts, |integrity, _, counts| integrity.push_slice(counts));
     }
 
-    /// As [`push_slices`](Self::push_slices). `look` is shown the integrity of each axis after every 64 of its samples here, so that
-    /// it finds about when something began.
+    /// As [`push_slices`](Self::push_slices). `look` is shown the integrity of each axis after every 64 of its samples here, by
+    /// which it finds about when something began.
     pub fn push_slices_looking(
         &mut self,
         counts: [&[i32]; AXES],

@@ -194,7 +194,7 @@ impl Course {
 }
 
 impl<const COVARIATES: usize> Course<COVARIATES> {
-    /// Adds counts beside covariates that are zero.
+    /// Adds counts whose covariates are zero.
     pub(crate) fn push_counts(&mut self, counts: &[i32]) {
         let mut rest = counts;
         while let Some((&first, after)) = rest.split_first() {

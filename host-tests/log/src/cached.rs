@@ -49,8 +49,7 @@ impl Cached {
     ) -> Result<Ended, Failure> {
         // Counts take one pass, and a log of floats ends it at once.
         let is_worth_it = !V::ONLY_COUNTS && (SHORTEST..=LONGEST).contains(&self.length);
-        // In a page, temporary files would be memory.
-        let file = (is_worth_it && cfg!(not(target_family = "wasm"))).then(NamedTempFile::new);
+        let file = is_worth_it.then(NamedTempFile::new);
         let Some(Ok(file)) = file else {
             return self.text.pass(axes, visitor, progress);
         };

@@ -1,11 +1,11 @@
 //! Reads a log with the reader of its format.
 
+#[cfg(not(target_family = "wasm"))]
+use super::cached::Cached;
 #[cfg(any(feature = "bags", feature = "tables"))]
 use super::converted::Converted;
 use super::{
-    Axis, Covariates, Log, Options,
-    cached::Cached,
-    csv, npy, part, parts,
+    Axis, Covariates, Log, Options, csv, npy, part, parts,
     reading::{Watched, read_table},
     source::Format,
     ulog,
@@ -175,8 +175,9 @@ fn read_format(
     match format {
         Format::Text { gzip } => {
             let text = csv::Csv::open(path, gzip, options)?;
-            let length = path.metadata().map_or(0, |file| file.len());
-            let text = Cached::new(text, length);
+            // In a page, a temporary file would be memory.
+            #[cfg(not(target_family = "wasm"))]
+            let text = Cached::new(text, path.metadata().map_or(0, |file| file.len()));
             read_table(&text, path, options, wanted, progress)
         }
         Format::Parts => {

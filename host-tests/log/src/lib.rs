@@ -103,6 +103,7 @@ mod bag_ros1;
 mod bag_sqlite;
 mod between;
 pub mod block_means;
+#[cfg(not(target_family = "wasm"))]
 mod cached;
 #[cfg(feature = "bags")]
 mod channel;
@@ -180,6 +181,7 @@ mod ulog_messages;
 mod ulog_topics;
 pub mod unit;
 mod unit_names;
+#[cfg(not(target_family = "wasm"))]
 mod values;
 pub mod visible;
 mod watched;

@@ -33,7 +33,7 @@ pub trait CourseSums<const COVARIATES: usize>: Clone + Debug + PartialEq + Eq {
     /// Adds one count, and one of every covariate.
     fn push(&mut self, count: i32, covariates: [i32; COVARIATES]);
 
-    /// Adds counts beside covariates that are zero.
+    /// Adds counts whose covariates are zero.
     fn push_counts(&mut self, counts: &[i32]);
 
     /// So many samples are not in the record, or it is not known how many if the number is 0.

@@ -32,7 +32,7 @@ impl Hole {
         if quarter > step { quarter } else { step }
     }
 
-    /// The distance from zero from which on a value is not beside the edge: twice that of the edge, or three steps beyond it. Before
+    /// The distance from zero from which on a value does not adjoin the edge: twice that of the edge, or three steps beyond it. Before
     /// there is an edge, any value may be it.
     #[inline(always)]
     pub(super) fn reach(&self, step: u32) -> u32 {

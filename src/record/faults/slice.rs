@@ -7,7 +7,7 @@ use super::{
 };
 
 impl SampleFaults {
-    /// Adds counts, and tells of each how many steps it is away from the one before, as [`push`](Self::push) does; 4 behind a gap.
+    /// Adds counts, and writes for each how many steps it is away from the one before, as [`push`](Self::push) does; 4 behind a gap.
     /// Takes as many counts as there is room for steps. The state afterwards is the same as if they were pushed one by one, but it
     /// is reached sooner.
     pub fn push_slice(&mut self, counts: &[i32], steps: &mut [u8]) {

@@ -91,7 +91,7 @@ impl Steps {
         class
     }
 
-    /// Adds the differences of a chunk, tells how many steps each of them has, and returns how many are zero. If one is shorter
+    /// Adds the differences of a chunk, writes how many steps each of them has, and returns how many are zero. If one is shorter
     /// than a step, or if it is not yet known which are usual, it does nothing and returns `None`.
     pub(super) fn push_chunk(
         &mut self,

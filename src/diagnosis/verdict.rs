@@ -23,6 +23,16 @@ pub enum Verdict {
 }
 
 impl Verdict {
+    /// The names of all verdicts, as [`Verdict::name`] gives them.
+    pub const NAMES: [&'static str; 6] = [
+        "adequate",
+        "improved",
+        "incomplete",
+        "unexplained",
+        "too_short",
+        "invalid",
+    ];
+
     /// The verdict's name in files.
     pub const fn name(self) -> &'static str {
         match self {

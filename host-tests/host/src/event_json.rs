@@ -1,19 +1,31 @@
 //! What happened during a record, in JSON documents.
 
+use crate::schema::EventName;
 use allanite::course::{Event as Told, What};
 use allanite_log::Disturbance;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Something that happened during the record.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "event")]
 pub struct Event {
+    /// The kind of the event.
+    #[schemars(with = "EventName")]
     what: &'static str,
+    /// When it happened, in seconds from the first sample.
     at_s: f64,
     /// A ratio of standard deviations for noise and bursts, in rate units for a step and a warm-up.
+    #[schemars(with = "Option<f64>")]
     size: f64,
+    #[schemars(with = "Option<f64>")]
     lower: f64,
+    #[schemars(with = "Option<f64>")]
     upper: f64,
+    /// Standard errors from no event.
+    #[schemars(with = "Option<f64>")]
     z: f64,
+    /// The time constant of a warm-up, in seconds.
     #[serde(skip_serializing_if = "Option::is_none")]
     time_constant_s: Option<f64>,
 }

@@ -1,12 +1,16 @@
 //! The filter that is known to be in a sensor's signal path.
 
 use super::effect_argument::EffectArgument;
-use crate::words::{article, parameters, plain, shape};
+use crate::{
+    schema::Numbers,
+    words::{article, parameters, plain, shape},
+};
 use allanite::{
     Model, Term,
     effect::{AngleRandomWalk, CATALOGUE, Effect},
 };
 use allanite_log::failure::Failure;
+use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::{Map, Value};
 
@@ -63,9 +67,11 @@ pub fn described(term: &Term) -> String {
 }
 
 /// An effect and its shape, as JSON documents have it.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "shape")]
 pub struct Shape {
     effect: &'static str,
+    #[schemars(with = "Numbers")]
     parameters: Map<String, Value>,
 }
 

@@ -25,6 +25,7 @@ pub mod overbound;
 pub mod quantile;
 pub mod record;
 pub mod rounding;
+pub mod schema;
 pub mod simulate;
 pub mod stationarity;
 pub mod tried;

@@ -2,7 +2,9 @@
 
 use crate::{
     dependence::candidates::{Candidate, Form},
-    fit, units, words,
+    fit,
+    schema::Numbers,
+    units, words,
 };
 use allanite::{
     Comparison, Model, Term,
@@ -12,13 +14,17 @@ use allanite::{
     fit::Fit,
 };
 use allanite_log::{BINS, OCTAVES, unit::Unit};
+use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::{Map, Value};
+use std::collections::BTreeMap;
 
 /// An effect of a model, with its shape and its coefficient.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "effect")]
 pub struct Effect {
     name: &'static str,
+    #[schemars(with = "Numbers")]
     parameters: Map<String, Value>,
     /// The column of a covariate; other effects have none.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -53,23 +59,31 @@ pub fn covariate(slope: &Slope, series: &Candidate) -> Effect {
 }
 
 /// The octave with the largest disagreement.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "worst")]
 pub struct Worst {
+    /// The averaging time in seconds.
     tau_s: f64,
+    /// Standard errors from the model.
     z: f64,
+    /// The difference from the model, in percent.
     percent: f64,
 }
 
 /// The size of an effect that a record would have shown, over a range of shapes.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "detection_range")]
 pub struct DetectionRange {
     effect: &'static str,
     /// The name of the number that is limited: the coefficient or, for a filter, a shape parameter.
     limited: &'static str,
+    /// The size that the record would have shown with a probability of 95 %.
     limit: f64,
+    /// The unit of the limit; empty for a pure number.
     unit: String,
     /// The ends of the range of the first shape parameter, by its name.
     #[serde(flatten)]
+    #[schemars(with = "BTreeMap<String, [Option<f64>; 2]>")]
     ends: Map<String, Value>,
 }
 

@@ -15,6 +15,7 @@ use allanite::{
     spectrum::Spectrum,
 };
 use allanite_log::{self as log, BINS, OCTAVES, failure::plural, is_degrees_column, unit::Unit};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// A covariate that was tried.
@@ -48,8 +49,10 @@ enum Found {
 }
 
 /// A covariate that was tried, in JSON.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "covariate")]
 pub struct Document {
+    /// The column of the log, or what is formed from it.
     channel: String,
     /// Whether the rate follows it.
     acts: bool,
@@ -57,6 +60,7 @@ pub struct Document {
     slope: Option<f64>,
     slope_lower: Option<f64>,
     slope_upper: Option<f64>,
+    /// The slope over its standard error.
     z: Option<f64>,
     /// The lag with which the rate follows it, with its 95 % interval.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -63,7 +63,6 @@ mod report;
 mod report_figures;
 mod report_layout;
 mod report_view;
-mod schema;
 mod simulate;
 mod thorough;
 mod untrusted;

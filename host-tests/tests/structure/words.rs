@@ -2,7 +2,7 @@
 
 use crate::script::Files;
 use proc_macro2::{TokenStream, TokenTree};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use syn::{
     Expr, ExprLit, Item, Lit, LitStr, Macro,
     visit::{self, Visit},
@@ -28,7 +28,7 @@ pub(crate) struct Catalogue {
     /// Sentences as the words between their holes.
     sentences: Vec<Vec<Vec<String>>>,
     /// The names of verdicts in files.
-    pub(crate) names: Vec<String>,
+    pub(crate) names: BTreeSet<String>,
 }
 
 impl Catalogue {
@@ -91,7 +91,7 @@ impl Catalogue {
             found.extend(
                 called
                     .iter()
-                    .filter(|text| self.names.contains(text))
+                    .filter(|text| self.names.contains(*text))
                     .cloned(),
             );
         }

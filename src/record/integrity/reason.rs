@@ -110,6 +110,23 @@ pub enum Reason {
 }
 
 impl Reason {
+    /// The words of all reasons, as [`Reason::name`] gives them.
+    pub const NAMES: [&'static str; 13] = [
+        "stuck",
+        "repeated",
+        "unanswered",
+        "stale",
+        "coarse",
+        "misread",
+        "railed",
+        "dead_band",
+        "spiked",
+        "moved",
+        "changed",
+        "missing",
+        "left_out",
+    ];
+
     /// The reason as a word for files, such as `dead_band`: the name of the variant.
     pub const fn name(&self) -> &'static str {
         match self {

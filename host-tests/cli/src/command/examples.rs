@@ -90,6 +90,11 @@ pub(super) const WATCH: &str = examples! {
     "allanite watch --rate 100 --unit rad/s --print-every 60"
 };
 
+pub(super) const SCHEMA: &str = examples! {
+    "allanite schema fit"
+    "allanite schema lot"
+};
+
 pub(super) const COMPLETIONS: &str = examples! {
     "allanite completions bash"
     "allanite completions zsh"

@@ -24,6 +24,8 @@ mod output;
 mod plot;
 mod report;
 #[cfg(not(target_family = "wasm"))]
+mod schema;
+#[cfg(not(target_family = "wasm"))]
 mod simulate;
 pub mod usage;
 mod watch;

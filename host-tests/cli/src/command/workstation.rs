@@ -1,6 +1,6 @@
 //! The commands of a workstation, for which a page has no use: it would only become larger.
 
-use super::{certify, completions, decode, lot, simulate};
+use super::{certify, completions, decode, lot, schema, simulate};
 use allanite_log::failure::Failure;
 use clap::Subcommand;
 use std::io::Write;
@@ -11,6 +11,7 @@ pub(super) enum Command {
     Certify(certify::Arguments),
     Decode(decode::Arguments),
     Lot(lot::Arguments),
+    Schema(schema::Arguments),
     Completions(completions::Arguments),
 }
 
@@ -29,6 +30,7 @@ impl Command {
             Self::Certify(arguments) => certify::run(arguments, output),
             Self::Decode(arguments) => decode::run(arguments, output),
             Self::Lot(arguments) => lot::run(arguments, output),
+            Self::Schema(arguments) => schema::run(arguments, output),
             Self::Completions(arguments) => completions::run(arguments, line(), output),
         }
     }

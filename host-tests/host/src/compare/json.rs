@@ -4,52 +4,79 @@ use super::compared::Compared;
 use crate::{
     fit,
     model_json::{self, Effect, Worst},
+    schema::{Numbers, UnitName},
 };
 use allanite::{
     Model,
     comparison::{self, ComparedOctave},
 };
 use allanite_log::unit::Unit;
+use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::{Map, Value};
 
-/// The document of one file.
-#[derive(Serialize)]
+/// The comparisons of one file.
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "axes")]
 pub struct Document<'a> {
     axes: Vec<Axis<'a>>,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "axis")]
 struct Axis<'a> {
+    /// The name of the axis.
     axis: &'a str,
+    /// Samples per second.
     rate_hz: f64,
+    /// The unit of the rate.
+    #[schemars(with = "UnitName")]
     unit: Unit,
+    /// The model.
     effects: Vec<Effect>,
     coefficients: Vec<fit::json::Term>,
     octaves: Vec<Octave>,
+    /// χ² of the comparison.
+    #[schemars(with = "Option<f64>")]
     chi2: f64,
+    /// The degrees of freedom.
     dof: usize,
+    #[schemars(with = "Option<f64>")]
     p_value: f64,
+    /// The rms difference of the Allan variances from the model, in percent.
+    #[schemars(with = "Option<f64>")]
     rms_percent: f64,
+    /// The octave that differs most.
     worst: Option<Worst>,
+    /// Averaging times between which the curve lies on one side of the model.
     stretches: Vec<Stretch>,
+    /// The comparison in words.
     words: String,
     held_out: Option<HeldOut>,
 }
 
 /// An octave: deviations in the log's unit, and the difference of the variances in percent.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "octave")]
 struct Octave {
+    /// The averaging factor.
     m: u32,
+    /// The averaging time in seconds.
     tau_s: f64,
     measured: f64,
     model: f64,
+    #[schemars(with = "Option<f64>")]
     percent: f64,
+    /// Standard errors from the model.
+    #[schemars(with = "Option<f64>")]
     z: f64,
+    /// The share of each effect in the variance of the model, by its name.
+    #[schemars(with = "Numbers")]
     shares: Map<String, Value>,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "stretch")]
 struct Stretch {
     side: &'static str,
     from_s: f64,
@@ -57,18 +84,23 @@ struct Stretch {
 }
 
 /// The number of held-out samples, with which the model was compared, and how well it fits the others.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "held_out")]
 struct HeldOut {
     samples: u64,
     fitted: Fitted,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "fitted")]
 struct Fitted {
     samples: u64,
+    #[schemars(with = "Option<f64>")]
     chi2: f64,
     dof: usize,
+    #[schemars(with = "Option<f64>")]
     p_value: f64,
+    #[schemars(with = "Option<f64>")]
     rms_percent: f64,
 }
 

@@ -10,6 +10,7 @@ use crate::{
     fit,
     known_filter::Shape,
     model_json::{self, Effect, Worst},
+    schema::{Numbers, ReasonName, VerdictName},
     tried::{self, TriedCovariate},
 };
 use allanite::{
@@ -19,23 +20,29 @@ use allanite::{
     diagnosis::{Candidate as Tried, Step as Taken},
 };
 use allanite_log::{BINS, OCTAVES, unit::Unit};
+use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::{Map, Value};
 
-/// The document of one file.
-#[derive(Serialize)]
+/// The diagnoses of one file.
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "axes")]
 pub struct Document<'a> {
     /// The axes, in their order in the record.
     pub axes: Vec<Axis<'a>>,
 }
 
-/// An axis with the steps of its diagnosis.
-#[derive(Serialize)]
+/// The diagnosis of an axis.
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "axis")]
 pub struct Axis<'a> {
+    /// The name of the axis.
     axis: &'a str,
     /// The filter that was given, and whether it fits.
     #[serde(skip_serializing_if = "Option::is_none")]
     filter: Option<Filter>,
+    /// From the five terms to the last model, which explains the record if one does.
+    #[schemars(length(min = 1))]
     steps: Vec<Step>,
     /// The spectrum beside the last model.
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -51,30 +58,40 @@ pub struct Axis<'a> {
     /// The covariates that were tried.
     covariates: Vec<tried::Document>,
     /// The verdict, as it is written in files.
+    #[schemars(with = "VerdictName")]
     pub verdict: &'static str,
     /// Why the record is not valid; `null` if it is.
     invalid: Option<String>,
     /// The same in a word.
+    #[schemars(with = "Option<ReasonName>")]
     reason: Option<&'static str>,
     /// The effects that the five terms lack, and a covariate if the rate follows one.
     pub missing: Vec<&'static str>,
+    /// Effects that would explain the record as well.
     ambiguous: Vec<&'static str>,
     /// The sizes of effects that the record would have shown with a probability of 95 %, over ranges of shapes.
     detection_limits: Vec<DetectionLimit>,
+    /// Notes, a sentence each.
     notes: Vec<String>,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "line")]
 struct SpectralLine {
     frequency_hz: f64,
+    #[schemars(with = "Option<f64>")]
     lower_hz: f64,
+    #[schemars(with = "Option<f64>")]
     upper_hz: f64,
+    /// In rate units.
+    #[schemars(with = "Option<f64>")]
     amplitude: f64,
     /// The width in hertz that is excluded with a probability of 95 %, as that of a resonance.
     narrower_than_hz: Option<f64>,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "comb")]
 struct Harmonics {
     fundamental_hz: f64,
     /// The nominal frequency of the mains, if the fundamental agrees with it.
@@ -85,44 +102,63 @@ struct Harmonics {
     words: String,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "filter")]
 struct Filter {
     #[serde(flatten)]
     given: Shape,
+    /// Whether the filter that was given fits.
     fits: bool,
     /// The filter that fits better; `null` if the given one fits, or no filter does.
     better: Option<Shape>,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "detection_limit")]
 struct DetectionLimit {
     #[serde(flatten)]
     range: model_json::DetectionRange,
     /// The limit of every shape of the range that was computed.
+    #[schemars(with = "Vec<Numbers>")]
     shapes: Vec<Map<String, Value>>,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "step")]
 struct Step {
+    /// The model.
     effects: Vec<Effect>,
     coefficients: Vec<fit::json::Term>,
+    /// χ² of the fit.
+    #[schemars(with = "Option<f64>")]
     chi2: f64,
     /// `chi2`, and what the rate follows of a covariate as long as that is not subtracted: it falls from step to step.
+    #[schemars(with = "Option<f64>")]
     error: f64,
+    /// The degrees of freedom.
     dof: usize,
     /// The deviance of the fit, as that of `fit`.
+    #[schemars(with = "Option<f64>")]
     deviance: f64,
+    #[schemars(with = "Option<f64>")]
     p_value: f64,
     /// The factor by which intervals and bounds are widened.
+    #[schemars(with = "Option<f64>")]
     birge_ratio: f64,
+    /// The rms difference of the Allan variances from the model, in percent.
+    #[schemars(with = "Option<f64>")]
     rms_percent: f64,
+    /// The octave that differs most.
     worst: Option<Worst>,
+    /// The effects that were tried, the best one first.
     candidates: Vec<Candidate>,
+    /// What the next step adds; `null` in the last step.
     added: Option<&'static str>,
 }
 
 /// A bin of the spectrum.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "bin")]
 struct Bin {
     frequency_hz: f64,
     /// The number of samples in a block.
@@ -131,14 +167,21 @@ struct Bin {
     density: f64,
     /// The density that the model has there.
     expected: f64,
+    /// Standard errors between them.
+    #[schemars(with = "Option<f64>")]
     z: f64,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "candidate")]
 struct Candidate {
     effect: &'static str,
+    #[schemars(with = "Numbers")]
     parameters: Map<String, Value>,
+    #[schemars(with = "Option<f64>")]
     chi2: f64,
+    /// By how much χ² falls, scaled.
+    #[schemars(with = "Option<f64>")]
     improvement: f64,
 }
 

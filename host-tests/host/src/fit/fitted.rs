@@ -18,10 +18,12 @@ use allanite::{
 };
 use allanite_log::{Evidence, OCTAVES, failure::Failure};
 use clap::ValueEnum;
+use schemars::JsonSchema;
 use std::path::Path;
 
 /// The names of the methods, which differ in how they weight the octaves.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, JsonSchema)]
+#[schemars(rename_all = "kebab-case", inline)]
 pub enum MethodName {
     /// Unweighted, unconstrained least squares, as a baseline
     Ordinary,

@@ -1,89 +1,119 @@
 //! The JSON document of a fit.
 
-use super::{fitted::Fitted, judged::Judged};
+use super::{
+    fitted::{Fitted, MethodName},
+    judged::Judged,
+};
 use crate::{
     known_filter::{Shape, known_filter},
-    rounding,
+    rounding, schema,
     tried::{self, TriedCovariate},
     units,
 };
 use allanite::{Coefficient, fit::State, integrity::Reason};
 use allanite_log::unit::Unit;
+use schemars::JsonSchema;
 use serde::{Serialize, Serializer};
 
-/// The document of one file.
-#[derive(Serialize)]
+/// The fits of one file.
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "axes")]
 pub struct Document<'a> {
     /// The axes, in their order in the record.
     pub axes: Vec<Axis<'a>>,
 }
 
-/// An axis with its coefficients.
-#[derive(Serialize)]
+/// The fit of an axis.
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "axis")]
 pub struct Axis<'a> {
+    /// The name of the axis.
     axis: &'a str,
+    /// Samples per second.
     rate_hz: f64,
+    /// The unit of the rate.
+    #[schemars(with = "schema::UnitName")]
     unit: Unit,
-    /// The mean rate, which no term of the noise stands for; `None` if it is not known.
+    /// The mean rate, which no term of the noise stands for; `null` if it is not known.
     mean_rate: Option<f64>,
+    /// The Allan curve.
     octaves: Vec<Octave>,
+    /// How the octaves are weighted.
+    #[schemars(with = "MethodName")]
     method: &'static str,
     /// The filter that was given.
     #[serde(skip_serializing_if = "Option::is_none")]
     filter: Option<Shape>,
     /// The coefficients, in the order of the model.
     pub coefficients: Vec<Term>,
-    /// χ² of the fit; `None` if the method has none.
+    /// χ² of the fit; `null` for a method without error model.
     pub chi2: Option<f64>,
     /// Its degrees of freedom.
     pub dof: Option<usize>,
-    /// The deviance, which is larger for a model that lies far above the curve; `None` if the method has no χ².
+    /// Squared deviance residuals in units of their correlation: about χ² for a true model, larger for one that lies far above the
+    /// curve; `null` if the method has no χ².
     pub deviance: Option<f64>,
-    /// The probability that χ² or the deviance is as large by chance.
+    /// The probability of a larger χ² if the model is true, or ten times that of a larger deviance if this is smaller.
     pub p_value: Option<f64>,
-    /// Whether the five terms explain a valid curve; `null` if the record does not tell, or the method does not.
+    /// Whether the five terms explain a valid record and the diagnosis finds nothing else in it; `null` if this is not known.
     pub adequate: Option<bool>,
-    /// The verdict of the diagnosis.
+    /// The verdict of the diagnosis, as `diagnose` has it; `null` if none was made.
+    #[schemars(with = "Option<schema::VerdictName>")]
     verdict: Option<&'static str>,
     /// The effects and the covariate that the five terms lack.
     missing: &'a [&'static str],
     /// The factor by which intervals and bounds are widened.
+    #[schemars(with = "Option<f64>")]
     birge_ratio: f64,
     /// Why the curve is not valid; `null` if it is.
     pub invalid: Option<&'a str>,
     /// The same in a word.
+    #[schemars(with = "Option<schema::ReasonName>")]
     reason: Option<&'static str>,
     /// The covariates that were tried.
     covariates: Vec<tried::Document>,
-    /// What the limits that were asked for say.
+    /// The limits that were asked for.
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
     limits: &'a [Judged],
+    /// Notes, a sentence each.
     notes: Vec<String>,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "octave")]
 struct Octave {
+    /// The averaging factor.
     m: u32,
+    /// The averaging time in seconds.
     tau_s: f64,
+    /// The number of differences of adjacent clusters.
     differences: u64,
+    /// The Allan variance in rate units squared.
     variance: f64,
 }
 
-/// A coefficient in a unit that follows from the log's; infinite ends of an interval are `null`.
-#[derive(Serialize)]
+/// A coefficient in a unit that follows from the log's.
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "coefficient")]
 pub struct Term {
+    /// The name of the effect.
     effect: &'static str,
-    /// The symbol: `N`.
+    /// Its symbol, such as `N`.
     pub symbol: &'static str,
     /// The best estimate.
+    #[schemars(with = "Option<f64>")]
     pub value: f64,
-    /// The lower end of the interval of 95 %.
+    /// The lower end of the 95 % interval; zero unless the coefficient is measured.
+    #[schemars(with = "Option<f64>")]
     pub lower: f64,
-    /// The upper end of the interval, or the upper bound.
+    /// The upper end of the 95 % interval, or the one-sided 95 % bound; `null` if nothing bounds it.
+    #[schemars(with = "Option<f64>")]
     pub upper: f64,
-    /// Whether it was measured.
+    /// Whether the interval excludes zero.
     #[serde(serialize_with = "state")]
+    #[schemars(with = "schema::StateName")]
     pub state: State,
+    /// The unit of the three numbers.
     unit: String,
 }
 

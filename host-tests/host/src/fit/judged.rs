@@ -12,13 +12,15 @@ use crate::{
 };
 use allanite::{fit::Fit, self_test::BIAS};
 use allanite_log::failure::Failure;
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::sync::atomic::{AtomicU8, Ordering};
 
 /// What a limit says of an axis. The rule is that of `allanite::ieee_952::Limits`, which decides on a device: what is known to
 /// keep a limit passes, and what is known to exceed one fails (ISO 14253-1).
-#[derive(Clone, Copy, Serialize)]
+#[derive(Clone, Copy, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[schemars(rename = "conformity")]
 enum Conformity {
     /// The 95 % interval keeps the limit.
     Pass,
@@ -48,10 +50,13 @@ impl Conformity {
 }
 
 /// A limit of an axis, and what it says.
-#[derive(Clone, Serialize)]
+#[derive(Clone, Serialize, JsonSchema)]
+#[schemars(rename = "limit")]
 pub struct Judged {
+    /// The name of an effect, or `bias` for the mean rate.
     effect: &'static str,
     symbol: &'static str,
+    /// The limit, in `unit`.
     most: f64,
     unit: String,
     verdict: Conformity,

@@ -9,8 +9,13 @@ use allanite::{
         CertifiedState, CertifiedTerm,
     },
 };
-use allanite_host::{event_json, model_json, units};
+use allanite_host::{
+    event_json, model_json,
+    schema::{self, Numbers, ReasonName, StateName, UnitName, VerdictName},
+    units,
+};
 use allanite_log::unit::Unit;
+use schemars::{JsonSchema, Schema};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 use std::{
@@ -18,19 +23,25 @@ use std::{
     path::Path,
 };
 
-#[derive(Serialize)]
+/// Certificates and snapshots. Programs that read it skip properties that they do not know.
+#[derive(Serialize, JsonSchema)]
 struct Document {
+    /// The certificates.
     records: Vec<Device>,
     snapshots: Vec<Snapshot>,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "certificate")]
 struct Device {
     file: String,
+    /// The identity of the device.
     device: String,
     device_hex: String,
     firmware: String,
+    #[schemars(with = "UnitName")]
     unit: Unit,
+    /// The lowest and the highest temperature during the record.
     temperature_c: Option<(f32, f32)>,
     duration_s: f64,
     rate_hz: f64,
@@ -39,21 +50,28 @@ struct Device {
     axes: Vec<Axis>,
 }
 
-/// One axis of a record; numbers that are not finite are `null`.
-#[derive(Serialize)]
+/// One axis of a record.
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "axis")]
 struct Axis {
     axis: String,
+    #[schemars(with = "Option<VerdictName>")]
     verdict: Option<&'static str>,
     /// Why the record is not valid, in a sentence and in a word.
     invalid: Option<String>,
+    #[schemars(with = "Option<ReasonName>")]
     reason: Option<&'static str>,
     found: Vec<&'static str>,
     coefficients: Vec<Term>,
     /// Covariance of the squared coefficients, as a lower triangle.
+    #[schemars(with = "Vec<Vec<Option<f64>>>")]
     covariance: Vec<Vec<f64>>,
+    #[schemars(with = "Option<f64>")]
     chi2: f64,
     dof: u16,
+    #[schemars(with = "Option<f64>")]
     p_value: f64,
+    #[schemars(with = "Option<f64>")]
     tolerance: f32,
     /// The sizes of effects that the record would have shown with a probability of 95 %.
     detection_limits: Vec<model_json::DetectionRange>,
@@ -68,41 +86,48 @@ struct Axis {
     events: Vec<event_json::Event>,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct Slope {
     covariate: u8,
     slope: f32,
     error: f32,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct Doubt {
     effect: &'static str,
     other: &'static str,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct Band {
     from_hz: f32,
     to_hz: f32,
     z: f32,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "coefficient")]
 struct Term {
     effect: &'static str,
     symbol: Option<&'static str>,
+    #[schemars(with = "Option<f64>")]
     value: f32,
+    #[schemars(with = "Option<f64>")]
     lower: f32,
+    #[schemars(with = "Option<f64>")]
     upper: f32,
+    #[schemars(with = "Option<f64>")]
     square_error: f32,
+    #[schemars(with = "StateName")]
     state: &'static str,
     after_s: Option<f32>,
     unit: Option<String>,
+    #[schemars(with = "Numbers")]
     shape: Map<String, Value>,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct Snapshot {
     file: String,
     samples: u64,
@@ -110,12 +135,17 @@ struct Snapshot {
     octaves: Vec<Octave>,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct Octave {
     m: u32,
     differences: u64,
-    /// The sum of squared differences; `null` if it exceeds 128 bits.
+    /// The sum of squared differences, a whole number of up to 128 bits; `null` if it is larger.
     sum: Option<u128>,
+}
+
+/// The schema of what is printed.
+pub(in crate::command) fn schema(title: &str) -> Schema {
+    schema::of::<Document>(title)
 }
 
 /// Prints all certificates and snapshots as one JSON document.

@@ -13,6 +13,7 @@ use allanite_log::{
 use clap::Args;
 use decoded::{Decoded, Stored, StoredSnapshot};
 pub(super) use decoded::{axis_name, device, firmware};
+pub(super) use json::schema;
 use std::{
     io::{Read, Write},
     path::{Path, PathBuf},

@@ -4,6 +4,7 @@ use crate::command::output::progress;
 use allanite_log::failure::{Failure, one_line, report};
 use clap::Args;
 use rayon::iter::{ParallelBridge, ParallelIterator};
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::{
     collections::BTreeMap,
@@ -44,7 +45,7 @@ impl FilesArguments {
 /// The findings of a command in one file, axis by axis.
 pub(crate) trait Findings: Sized + Send {
     /// The JSON document: a struct with named fields.
-    type Document<'a>: Serialize
+    type Document<'a>: Serialize + JsonSchema
     where
         Self: 'a;
 
@@ -73,22 +74,38 @@ pub(crate) fn shown(path: &Path) -> String {
     one_line(&path.to_string_lossy())
 }
 
-/// A file with its document, or with the message of its failure.
-#[derive(Serialize)]
-struct Outcome<D: Serialize> {
+/// One file has its document; several have `files`, in the order of the arguments. Programs that read it skip properties that they
+/// do not know.
+#[derive(Serialize, JsonSchema)]
+#[serde(untagged)]
+#[schemars(inline)]
+enum Printed<D> {
+    One(D),
+    Several { files: Vec<Outcome<D>> },
+}
+
+/// A file with its document, or with the message of its failure. It is a line of `--json-lines`.
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "file")]
+struct Outcome<D> {
+    /// The file, as in the arguments.
     file: String,
     #[serde(flatten)]
     result: Found<D>,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 #[serde(untagged)]
-enum Found<D: Serialize> {
+#[schemars(inline)]
+enum Found<D> {
     Axes(D),
-    Failed { error: String },
+    Failed {
+        /// Why the file has no result.
+        error: String,
+    },
 }
 
-impl<D: Serialize> Outcome<D> {
+impl<D> Outcome<D> {
     fn found(path: &Path, document: D) -> Self {
         Self {
             file: path.to_string_lossy().into_owned(),
@@ -104,6 +121,12 @@ impl<D: Serialize> Outcome<D> {
             },
         }
     }
+}
+
+/// The schema of what a command with these findings prints.
+#[cfg(not(target_family = "wasm"))]
+pub(crate) fn schema<F: Findings + 'static>(title: &str) -> schemars::Schema {
+    allanite_host::schema::of::<Printed<F::Document<'static>>>(title)
 }
 
 /// Does `work` on every file and prints the findings. A file that fails has its line on standard error
@@ -160,7 +183,7 @@ fn print<F: Findings>(
         if !files.json {
             return only.print(output);
         }
-        serde_json::to_writer(&mut *output, &only.document())?;
+        serde_json::to_writer(&mut *output, &Printed::One(only.document()))?;
         return writeln!(output);
     }
     if !files.json {
@@ -180,11 +203,7 @@ fn print<F: Findings>(
             },
         )
         .collect();
-    #[derive(Serialize)]
-    struct Together<O> {
-        files: Vec<O>,
-    }
-    serde_json::to_writer(&mut *output, &Together { files: outcomes })?;
+    serde_json::to_writer(&mut *output, &Printed::Several { files: outcomes })?;
     writeln!(output)
 }
 

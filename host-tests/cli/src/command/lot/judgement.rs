@@ -10,8 +10,10 @@ use allanite::diagnosis::Verdict;
 use allanite_host::{
     confidence::share_is_at_most,
     lot::{Decision, Measurement},
+    schema::ReasonName,
 };
 use allanite_log::unit::Unit;
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -25,30 +27,41 @@ pub(super) struct Judged<'a> {
     pub(super) lot: &'a Lot,
 }
 
-/// The judgement of a lot. Coefficients are in the unit that is told beside them.
-#[derive(Serialize)]
+/// The judgement of a lot. Coefficients are in the unit that is given with them. Programs that read it skip properties that they do
+/// not know.
+#[derive(Serialize, JsonSchema)]
 pub(super) struct Lot {
+    /// The number of devices.
     pub(super) devices: usize,
     /// The largest probability that a device at its limit passes, or fails.
+    #[schemars(range(min = 0.0, max = 0.5))]
     pub(super) risk: f64,
-    /// Devices by their worst coefficient.
+    /// Devices of which every coefficient passes.
     pub(super) passed: usize,
+    /// Devices that a longer record may decide.
     pub(super) guarded: usize,
-    /// Devices of which no model explains an axis, and those with a record that is not valid: nothing is decided of these.
+    /// Devices of which no model explains an axis, so that nothing is decided.
     pub(super) misfit: usize,
+    /// Devices with a record that is not one of a gyro at rest.
     pub(super) not_valid: usize,
+    /// Devices with a coefficient above its limit.
     pub(super) failed: usize,
-    /// The share of devices that passed, and the ends of its 95 % interval (Clopper & Pearson 1934).
+    /// The share of the devices that passed.
+    #[schemars(range(min = 0.0, max = 1.0))]
     pub(super) yield_share: f64,
+    /// The ends of its 95 % interval (Clopper & Pearson 1934).
     pub(super) yield_interval: [f64; 2],
+    /// Every axis of every limit.
     pub(super) limits: Vec<Limited>,
+    /// Coefficients above their limits.
     pub(super) failures: Vec<Failing>,
-    /// Coefficients in a guard band: a longer record may decide. The text tells their number only.
+    /// Coefficients in a guard band: a longer record may decide. The text has only their number.
     pub(super) undecided: Vec<Undecided>,
     /// Axes whose records are not valid. Nothing is decided of them, and they are left out of all that follows.
     pub(super) invalid: Vec<Invalid>,
     /// Axes that a diagnosis did not explain. Nothing is decided of these either.
     pub(super) unexplained: Vec<Named>,
+    /// Devices that are unlike the others.
     pub(super) outliers: Vec<Outlier>,
     /// The number of devices of which there is an earlier certificate.
     pub(super) compared: usize,
@@ -56,13 +69,14 @@ pub(super) struct Lot {
     pub(super) comparisons: usize,
     /// The number of standard errors from which on a coefficient has drifted.
     pub(super) drift_threshold: f64,
+    /// Coefficients that have drifted, the most significant one first.
     pub(super) drifted: Vec<Drift>,
     /// How many devices have an effect that the five terms lack.
     pub(super) found: BTreeMap<&'static str, usize>,
 }
 
 /// A device that failed a limit.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 pub(super) struct Failing {
     pub(super) device: String,
     pub(super) axis: String,
@@ -74,7 +88,7 @@ pub(super) struct Failing {
 }
 
 /// A coefficient of a device that its record does not decide.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 pub(super) struct Undecided {
     pub(super) device: String,
     pub(super) axis: String,
@@ -82,18 +96,19 @@ pub(super) struct Undecided {
 }
 
 /// An axis of a device.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 pub(super) struct Named {
     pub(super) device: String,
     pub(super) axis: String,
 }
 
 /// An axis whose record is not valid.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 pub(super) struct Invalid {
     pub(super) device: String,
     pub(super) axis: String,
     /// Why, in a word and in a sentence.
+    #[schemars(with = "ReasonName")]
     pub(super) reason: &'static str,
     pub(super) words: String,
 }

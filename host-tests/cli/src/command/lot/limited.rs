@@ -9,20 +9,21 @@ use allanite_host::{
     units,
 };
 use allanite_log::unit::Unit;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// The shares of devices below the percentiles that are told.
 const SHARES: [f64; 3] = [0.05, 0.5, 0.95];
 
-/// A coefficient of one axis beside its limit. Numbers are in the unit that is told.
-#[derive(Serialize)]
+/// A coefficient of an axis with its limit. Numbers are in `unit`.
+#[derive(Serialize, JsonSchema)]
 pub(super) struct Limited {
     pub(super) axis: String,
     pub(super) effect: &'static str,
     pub(super) unit: String,
     pub(super) limit: f64,
-    /// A device passes whose value is at most this, if its uncertainty is usual for the lot. `None` if the devices are too
-    /// few to tell, or if none would pass.
+    /// A device passes whose value is at most this, if its uncertainty is usual for the lot. `null` if there are too
+    /// few devices, or if none would pass.
     pub(super) accepted_up_to: Option<f64>,
     /// The limit less that value.
     pub(super) guard_band: Option<f64>,
@@ -35,10 +36,11 @@ pub(super) struct Limited {
     pub(super) expected_false_passes: f64,
     /// How many of those that failed are expected to be within the limit.
     pub(super) expected_false_failures: f64,
-    /// The number of devices in which it is measured, of which the rest tells.
+    /// The number of devices in which it is measured, on which the rest is based.
     pub(super) measured: usize,
     /// Percentiles: 5, 50 and 95 %.
     pub(super) percentiles: Option<[f64; 3]>,
+    /// The process capability of the logarithms.
     pub(super) cpk: Option<f64>,
     /// Its 95 % interval.
     pub(super) cpk_interval: Option<[f64; 2]>,

@@ -20,13 +20,14 @@ use crate::command::{
         record::{CovariateArguments, LogArguments},
     },
 };
-use allanite_host::limit::LimitArgument;
+use allanite_host::{limit::LimitArgument, schema};
 use allanite_log::failure::{Failure, Place};
 use clap::Args;
 use device::Device;
 use judgement::{Judged, Lot};
 use limited::Rule;
 use output::Output;
+use schemars::Schema;
 use std::{
     collections::BTreeMap,
     io::Write,
@@ -70,6 +71,11 @@ pub(super) struct Arguments {
     covariates: CovariateArguments,
     #[command(flatten)]
     about_log: LogArguments,
+}
+
+/// The schema of what is printed with `--json`.
+pub(super) fn schema(title: &str) -> Schema {
+    schema::of::<Lot>(title)
 }
 
 /// Runs the command. Files that cannot be decoded are named, and the lot is that of the others.

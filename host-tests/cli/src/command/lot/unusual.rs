@@ -8,11 +8,12 @@ use allanite_host::{
     units,
 };
 use allanite_log::unit::Unit;
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// A device whose coefficient is far from those of the others, its whole 95 % interval included.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 pub(super) struct Outlier {
     pub(super) device: String,
     pub(super) axis: String,
@@ -38,7 +39,7 @@ pub(super) struct Drifts {
 }
 
 /// A device whose coefficient has changed since its earlier certificate.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 pub(super) struct Drift {
     pub(super) device: String,
     pub(super) axis: String,

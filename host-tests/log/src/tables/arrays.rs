@@ -1,28 +1,59 @@
 //! Named arrays as columns of a table: what MATLAB and HDF5 have in common.
 
 use super::{
+    arrow_rows::Rows,
     choice::{Candidate, choose},
+    rewrite::Written,
     wrong::Wrong,
 };
 use crate::converted::Text;
-use std::{collections::BTreeMap, io::Write as _};
+use ::arrow::array::{ArrayRef, Float64Array, Int64Array, RecordBatch, UInt64Array};
+use std::{collections::BTreeMap, ops::Range, sync::Arc};
 
 /// More columns are refused by the reader of text, and would make the text long.
 const MOST_COLUMNS: usize = 256;
+
+/// The number of rows that are copied at once.
+const BATCH: usize = 1 << 13;
+
+/// Floats below are whole where they have no fraction; larger ones have none.
+const WHOLE: f64 = (1_u64 << f64::MANTISSA_DIGITS) as f64;
 
 /// The values of an array, in the order of the file.
 pub(super) enum Values {
     Signed(Vec<i64>),
     Unsigned(Vec<u64>),
+    /// Whole numbers, and NaN where there is none.
+    Count(Vec<f64>),
     Float(Vec<f64>),
 }
 
 impl Values {
-    fn write(&self, at: usize, text: &mut Text) -> std::io::Result<()> {
+    /// Floats, which are counts if all of them are whole: MATLAB has no other numbers unless it is asked for them.
+    pub(super) fn of_floats(values: Vec<f64>) -> Self {
+        let mut numbers = values.iter().filter(|value| !value.is_nan()).peekable();
+        let is_count = |value: &f64| value.fract() == 0.0 && value.abs() < WHOLE;
+        match numbers.peek().is_some() && numbers.all(is_count) {
+            true => Self::Count(values),
+            false => Self::Float(values),
+        }
+    }
+
+    /// Every `stride`th value from `first` on, as a column.
+    fn column(&self, first: usize, stride: usize, rows: usize) -> ArrayRef {
+        fn some<T: Copy>(values: &[T], first: usize, stride: usize, rows: usize) -> Vec<T> {
+            let values = values.get(first..).unwrap_or_default();
+            values.iter().step_by(stride).take(rows).copied().collect()
+        }
         match self {
-            Self::Signed(values) => write!(text, "{}", values[at]),
-            Self::Unsigned(values) => write!(text, "{}", values[at]),
-            Self::Float(values) => write!(text, "{}", values[at]),
+            Self::Signed(all) => Arc::new(Int64Array::from(some(all, first, stride, rows))),
+            Self::Unsigned(all) => Arc::new(UInt64Array::from(some(all, first, stride, rows))),
+            Self::Count(all) => {
+                let values = some(all, first, stride, rows).into_iter();
+                let values = values.map(|value| (!value.is_nan()).then_some(value as i64));
+                Arc::new(values.collect::<Int64Array>())
+            }
+            Self::Float(all) => Arc::new(Float64Array::from(some(all, first, stride, rows))),
         }
     }
 
@@ -30,7 +61,7 @@ impl Values {
         match self {
             Self::Signed(values) => values.len(),
             Self::Unsigned(values) => values.len(),
-            Self::Float(values) => values.len(),
+            Self::Count(values) | Self::Float(values) => values.len(),
         }
     }
 }
@@ -93,6 +124,14 @@ impl Array {
         row * self.stride + column * next
     }
 
+    /// Some rows of all columns.
+    fn columns(&self, rows: Range<usize>) -> impl Iterator<Item = ArrayRef> {
+        (0..self.columns).map(move |column| {
+            let first = self.at(rows.start, column);
+            self.values.column(first, self.stride, rows.len())
+        })
+    }
+
     fn names(&self) -> impl Iterator<Item = String> {
         (0..self.columns).map(|column| match self.columns {
             1 => self.name.clone(),
@@ -106,8 +145,8 @@ impl Array {
 pub(super) fn write(
     arrays: Vec<Array>,
     topic: Option<&str>,
-    text: &mut Text,
-) -> Result<Option<String>, Wrong> {
+    (text, values): (&mut Text, Option<Text>),
+) -> Result<Written, Wrong> {
     let mut tables: BTreeMap<(String, usize), Vec<Array>> = BTreeMap::new();
     for array in arrays {
         let table = tables.entry((array.place.clone(), array.rows)).or_default();
@@ -129,24 +168,17 @@ pub(super) fn write(
     let (chosen, note) = choose(&candidates, topic, "table")?;
     let mut tables = tables.into_iter().filter(|((_, rows), _)| *rows > 1);
     let Some(((_, rows), table)) = tables.nth(chosen) else {
-        return Ok(note);
+        return Ok((note, None));
     };
     // The columns of a lone matrix have no names of their own.
     let has_names = table.len() > 1 || matches!(table[0].columns, 1 | 3);
-    if has_names {
-        let names: Vec<String> = table.iter().flat_map(Array::names).collect();
-        text.names(&names)?;
+    let names: Vec<String> = table.iter().flat_map(Array::names).collect();
+    let mut written = Rows::new(text, values, has_names);
+    for first in (0..rows).step_by(BATCH) {
+        let some = first..rows.min(first + BATCH);
+        let columns = table.iter().flat_map(|array| array.columns(some.clone()));
+        let columns = names.iter().zip(columns);
+        written.push(RecordBatch::try_from_iter(columns).map_err(Wrong::damaged)?)?;
     }
-    for row in 0..rows {
-        let mut separator = "";
-        for array in &table {
-            for column in 0..array.columns {
-                text.write_all(separator.as_bytes())?;
-                separator = ",";
-                array.values.write(array.at(row, column), text)?;
-            }
-        }
-        text.write_all(b"\n")?;
-    }
-    Ok(note)
+    Ok((note, written.finish()?))
 }

@@ -47,7 +47,7 @@ pub(super) fn convert(
         }
         _ => Box::new(StreamReader::try_new(BufReader::new(file), None).map_err(Wrong::damaged)?),
     };
-    let mut rows = Rows::new(text, values);
+    let mut rows = Rows::new(text, values, true);
     for batch in batches {
         let batch = columns(&batch.map_err(Wrong::damaged)?).map_err(Wrong::damaged)?;
         if batch.num_columns() == 0 {

@@ -1,4 +1,4 @@
-//! Writes the rows of Arrow's batches: all of them as text if they are few. Otherwise their numbers are written in binary, and
+//! Writes rows, in batches of Arrow's columns: all of them as text if they are few. Otherwise their numbers are written in binary, and
 //! as text only what tells the columns from each other: the first rows, the last ones, and those at which something changes that
 //! was the same in all of the first ones, because the rows of another sensor may begin there.
 
@@ -54,8 +54,10 @@ struct Binary {
 }
 
 impl<'a> Rows<'a> {
-    pub(super) fn new(text: &'a mut Text, values: Option<Text>) -> Self {
+    /// Text and numbers to these files; the text begins with the names of the columns if they have any.
+    pub(super) fn new(text: &'a mut Text, values: Option<Text>, has_names: bool) -> Self {
         let builder = WriterBuilder::new()
+            .with_header(has_names)
             .with_timestamp_format(STAMPS.into())
             .with_time_format(TIMES.into());
         Self {

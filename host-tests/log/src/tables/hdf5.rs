@@ -5,6 +5,7 @@ use super::{
     hdf5_left_out::LeftOut,
     hdf5_links,
     hdf5_lowest::Lowest,
+    rewrite::Written,
     wrong::Wrong,
 };
 use crate::{
@@ -21,8 +22,8 @@ const MOST: usize = 1000;
 pub(super) fn convert(
     path: &Path,
     topic: Option<&str>,
-    text: &mut Text,
-) -> Result<Option<String>, Wrong> {
+    to: (&mut Text, Option<Text>),
+) -> Result<Written, Wrong> {
     let size = path.metadata()?.len();
     let file = File::open_streaming(path).map_err(Wrong::damaged)?;
     let mut found = Found {
@@ -41,18 +42,19 @@ pub(super) fn convert(
     {
         return Err(wrong);
     }
-    let note =
-        arrays::write(found.arrays, topic, text).map_err(|wrong| match (wrong, &left_out) {
-            (Wrong::Unfit(what, remedy), Some(left_out)) => {
-                Wrong::unfit(format!("{what}, and {left_out}"), remedy)
-            }
-            (wrong, _) => wrong,
-        })?;
+    let written = arrays::write(found.arrays, topic, to);
+    let (note, layout) = written.map_err(|wrong| match (wrong, &left_out) {
+        (Wrong::Unfit(what, remedy), Some(left_out)) => {
+            Wrong::unfit(format!("{what}, and {left_out}"), remedy)
+        }
+        (wrong, _) => wrong,
+    })?;
     let notes: Vec<String> = [note, found.lowest.note(), left_out]
         .into_iter()
         .flatten()
         .collect();
-    Ok((!notes.is_empty()).then(|| notes.join("; ")))
+    let notes = (!notes.is_empty()).then(|| notes.join("; "));
+    Ok((notes, layout))
 }
 
 /// What a file holds.
@@ -189,12 +191,17 @@ impl Conventions {
         let floats: Vec<f64> = match &values {
             Values::Signed(values) => values.iter().map(|&value| convert(value as f64)).collect(),
             Values::Unsigned(values) => values.iter().map(|&value| convert(value as f64)).collect(),
-            Values::Float(values) => values.iter().map(|&value| convert(value)).collect(),
+            Values::Count(values) | Values::Float(values) => {
+                values.iter().map(|&value| convert(value)).collect()
+            }
         };
         // Whole numbers stay whole if there is nothing to say about them.
         match is_packed || floats.iter().any(|value| value.is_nan()) {
-            true => Values::Float(floats),
-            false => values,
+            true => Values::of_floats(floats),
+            false => match values {
+                Values::Float(values) => Values::of_floats(values),
+                whole => whole,
+            },
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use super::{
     arrays::{self, Array, Values},
+    rewrite::Written,
     wrong::Wrong,
 };
 use crate::converted::Text;
@@ -11,8 +12,8 @@ use std::{fs::File, io::BufReader, path::Path};
 pub(super) fn convert(
     path: &Path,
     topic: Option<&str>,
-    text: &mut Text,
-) -> Result<Option<String>, Wrong> {
+    to: (&mut Text, Option<Text>),
+) -> Result<Written, Wrong> {
     let file = MatFile::parse(BufReader::new(File::open(path)?)).map_err(Wrong::damaged)?;
     let arrays = file.arrays().iter().filter_map(|array| {
         let values = values(array.data())?;
@@ -26,7 +27,7 @@ pub(super) fn convert(
             "save the columns by themselves, or the table with `writetable(TABLE, 'log.csv')`",
         ));
     }
-    arrays::write(arrays, topic, text)
+    arrays::write(arrays, topic, to)
 }
 
 /// The values of an array of real numbers.
@@ -46,10 +47,10 @@ fn values(data: &NumericData) -> Option<Values> {
         UInt32 { real, imag: None } => signed(real),
         Int64 { real, imag: None } => signed(real),
         UInt64 { real, imag: None } => Some(Values::Unsigned(real.clone())),
-        Single { real, imag: None } => Some(Values::Float(
+        Single { real, imag: None } => Some(Values::of_floats(
             real.iter().map(|&value| value.into()).collect(),
         )),
-        Double { real, imag: None } => Some(Values::Float(real.clone())),
+        Double { real, imag: None } => Some(Values::of_floats(real.clone())),
         _ => None,
     }
 }

@@ -41,7 +41,10 @@ pub(crate) fn convert(
     let temporary = || Ok(NamedTempFile::new().map_err(io)?.into_temp_path());
     progress.set_length(path.metadata().map_or(0, |file| file.len()));
     let text = temporary()?;
-    let is_in_columns = matches!(kind, Kind::Arrow | Kind::Parquet);
+    let is_in_columns = matches!(
+        kind,
+        Kind::Arrow | Kind::Parquet | Kind::Hdf5 | Kind::Matlab
+    );
     let file = (parts && is_in_columns).then(temporary).transpose()?;
     let topic = options.topic.as_deref();
     let to = (&*text, file.as_deref());

@@ -42,8 +42,8 @@ pub(super) fn rewrite(
             }
             Kind::Ardupilot => ardupilot::convert(path, topic, &mut text)?,
             Kind::Betaflight => betaflight::convert(path, topic, &mut text)?,
-            Kind::Hdf5 => hdf5::convert(path, topic, &mut text)?,
-            Kind::Matlab => matlab::convert(path, topic, &mut text)?,
+            Kind::Hdf5 => return hdf5::convert(path, topic, (&mut text, values)),
+            Kind::Matlab => return matlab::convert(path, topic, (&mut text, values)),
             Kind::Workbook => workbook::convert(path, topic, &mut text)?,
         };
         Ok((note, None))

@@ -1,6 +1,6 @@
 //! Long tables in columns, whose numbers are not written as text: they give what the same table as text gives.
 
-use allanite_log::{self as log, Covariates, Options, RowChoice};
+use allanite_log::{self as log, Covariates, Options, RowChoice, unit::Unit};
 use arrow::{
     array::{
         ArrayRef, Decimal128Array, Float32Array, Float64Array, Int16Array, Int64Array, RecordBatch,
@@ -11,12 +11,18 @@ use arrow::{
     datatypes::DataType,
     ipc::writer::StreamWriter,
 };
+use hdf5_pure::FileBuilder;
 use indicatif::ProgressBar;
 use parquet::arrow::ArrowWriter;
 use rand::SeedableRng as _;
 use rand_distr::{Distribution as _, StandardNormal};
 use rand_xoshiro::Xoshiro256PlusPlus;
-use std::{fs::File, path::Path, sync::Arc};
+use std::{
+    fs::{self, File},
+    ops::Range,
+    path::Path,
+    sync::Arc,
+};
 use tempfile::TempDir;
 
 /// More than the first rows that are written as text in any case.
@@ -262,4 +268,60 @@ fn rows_of_another_sensor_are_found_as_in_the_text() {
         value: "2".into(),
     });
     chosen.check("the second sensor");
+}
+
+/// The columns of HDF5 have the order of their names.
+#[test]
+fn arrays_of_hdf5_are_those_of_their_text() {
+    let counts = |seed| noise(seed).into_iter().map(|value| (40.0 * value).round());
+    let with_gap = |seed, lost: Range<usize>| -> Vec<f64> {
+        let values = counts(seed).enumerate();
+        let values = values.map(|(row, value)| match lost.contains(&row) {
+            true => f64::NAN,
+            false => value,
+        });
+        values.collect()
+    };
+    let tables = [
+        ("floats", [noise(1), noise(2), noise(3)]),
+        ("counts", [1, 2, 3].map(|seed| counts(seed).collect())),
+        (
+            "counts with gaps",
+            [
+                with_gap(1, 5..8),
+                with_gap(2, 9000..9003),
+                with_gap(3, 0..0),
+            ],
+        ),
+    ];
+    for (name, axes) in tables {
+        let folder = TempDir::new().unwrap();
+        let path = |extension: &str| folder.path().join(format!("log.{extension}"));
+        let mut builder = FileBuilder::new();
+        let time = seconds(|row| row / 6000 * 3);
+        let columns = ["gx", "gy", "gz", "time"]
+            .into_iter()
+            .zip(axes.iter().chain([&time]));
+        for (name, values) in columns {
+            builder.create_dataset(name).with_f64_data(values);
+        }
+        fs::write(path("h5"), builder.finish().unwrap()).unwrap();
+        let row = |row: usize| {
+            let [x, y, z] = [0, 1, 2].map(|axis| match axes[axis][row] {
+                value if value.is_nan() => String::new(),
+                value => value.to_string(),
+            });
+            format!("{x},{y},{z},{}\n", time[row])
+        };
+        let text = (0..ROWS).map(row).collect::<String>();
+        fs::write(path("csv"), format!("gx,gy,gz,time\n{text}")).unwrap();
+        let options = Options {
+            unit: Some(Unit::DegreesPerSecond),
+            scale: Some(0.01).filter(|_| name != "floats"),
+            ..Options::default()
+        };
+        let (array, text) = (read(&path("h5"), &options), read(&path("csv"), &options));
+        assert!(!text.starts_with("refused"), "{name}: {text}");
+        assert!(array == text, "{name}: {array}\ninstead of\n{text}");
+    }
 }

@@ -2,7 +2,10 @@
 
 pub use crate::record::{
     faults::{JointRepeats, SampleFaults},
-    reads::Reads,
+    reads::{
+        Reads,
+        stale::{AtDistance, StaleRuns},
+    },
 };
 
 use crate::{

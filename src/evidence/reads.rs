@@ -1,6 +1,6 @@
 //! What a reader made of the samples of three axes, judged from its counts.
 
-use super::faults::Reads;
+use super::faults::{Reads, StaleRuns};
 use crate::{
     numerics::{
         math::sqrt,
@@ -117,29 +117,36 @@ impl<const AXES: usize> Reads<AXES> {
     /// Blocks that are there twice, most of them at one distance.
     fn stale(&self) -> Option<Reason> {
         let runs = &self.stale.runs;
-        let (distance, most) = runs.most()?;
-        let needed = runs.needed()?;
-        if most.longest < needed || runs.bits() < LEAST_BITS {
-            return None;
-        }
         // Pulses of an angle come back at the periods of their rate.
         if self.joint().is_alternating() && runs.bits() < PERIODIC {
             return None;
         }
-        let is_one = most.runs.saturating_mul(10) >= runs.whole.saturating_mul(7);
+        runs.verdict(self.samples(), AXES)
+    }
+}
+
+impl StaleRuns {
+    /// Whether so many samples of so many axes have blocks that are there twice, most of them at one distance.
+    pub fn verdict(&self, samples: u32, axes: usize) -> Option<Reason> {
+        let (distance, most) = self.most()?;
+        let needed = self.needed()?;
+        if most.longest < needed || self.bits() < LEAST_BITS {
+            return None;
+        }
+        let is_one = most.runs.saturating_mul(10) >= self.whole.saturating_mul(7);
         // Counts of few levels come back in runs of other lengths, too.
-        let least = if runs.bits() < PERIODIC { 17 } else { 12 };
-        let is_whole = runs.whole.saturating_mul(20) >= runs.long.saturating_mul(least);
+        let least = if self.bits() < PERIODIC { 17 } else { 12 };
+        let is_whole = self.whole.saturating_mul(20) >= self.long.saturating_mul(least);
         let [of_one, of_several] = RUNS;
-        let fewest = if AXES == 1 { of_one } else { of_several };
+        let fewest = if axes == 1 { of_one } else { of_several };
         let is_sure =
             most.runs >= fewest || most.longest.saturating_mul(10) >= needed.saturating_mul(17);
-        let share = real(most.samples) / real(self.samples().max(1));
-        let is_stale = self.samples() >= JUDGED && is_one && is_whole && is_sure;
+        let share = real(most.samples) / real(samples.max(1));
+        let is_stale = samples >= JUDGED && is_one && is_whole && is_sure;
         (is_stale && share < MOST).then_some(Reason::Stale {
             stale: most.samples.into(),
             distance,
-            samples: self.samples().into(),
+            samples: samples.into(),
         })
     }
 }

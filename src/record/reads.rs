@@ -1,7 +1,7 @@
 //! What a reader, and not the sensor, made of the samples: repeats, reads without an answer, and blocks of a buffer that was not
 //! refilled.
 
-mod stale;
+pub(crate) mod stale;
 #[cfg(feature = "storage")]
 mod stored;
 

@@ -22,36 +22,48 @@ const LEARNT: u32 = 120;
 /// The surprise, in bits, from which a run of equal samples is not by chance.
 const BITS: u32 = 32;
 
-/// The runs of samples that equal those at one distance before them.
+/// The runs of samples that equal those at one distance before them, which have the length of a block.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "storage", derive(serde::Serialize, serde::Deserialize))]
-pub(crate) struct AtDistance {
-    /// 0 if the place is free.
-    pub(crate) distance: u16,
-    pub(crate) runs: u32,
-    pub(crate) longest: u32,
-    /// Samples in all of them.
-    pub(crate) samples: u32,
+pub struct AtDistance {
+    /// The distance in samples; 0 if the place is free.
+    pub distance: u16,
+    /// The number of runs.
+    pub runs: u32,
+    /// The samples of the longest one.
+    pub longest: u32,
+    /// The samples in all of them.
+    pub samples: u32,
 }
 
-/// What is counted of the runs.
+/// What is counted of samples that equal others a fixed distance before them: a part of [`Reads`](super::Reads), or made from counts of
+/// parts of a record.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "storage", derive(serde::Serialize, serde::Deserialize))]
-pub(crate) struct Runs {
-    /// Windows that were looked up.
-    pub(crate) looked: u32,
-    /// Those of them whose last sample equals the one [`ELSEWHERE`] before.
-    pub(crate) elsewhere: u32,
-    /// Runs that are too long for chance, and those of them that have the length of a block.
-    pub(crate) long: u32,
-    pub(crate) whole: u32,
-    pub(crate) distances: [AtDistance; DISTANCES],
+pub struct StaleRuns {
+    /// Samples of which it is known whether they equal the one 11 before, where equal samples are chance.
+    pub looked: u32,
+    /// Those of them that do.
+    pub elsewhere: u32,
+    /// Runs that are too long for chance.
+    pub long: u32,
+    /// Those of them that have the [length of a block](Self::is_whole).
+    pub whole: u32,
+    /// The same by their distances, of which there are some.
+    pub distances: [AtDistance; DISTANCES],
 }
 
-impl Runs {
-    const NEW: Self = Self {
+impl StaleRuns {
+    /// The shortest and the longest distance at which a block is recognised, in samples.
+    pub const DISTANCES: core::ops::RangeInclusive<u16> = NEAREST..=FARTHEST;
+
+    /// The distance at which equal samples are chance.
+    pub const ELSEWHERE: u16 = ELSEWHERE;
+
+    /// Nothing counted.
+    pub const NEW: Self = Self {
         looked: 0,
         elsewhere: 0,
         long: 0,
@@ -64,8 +76,8 @@ impl Runs {
         }; DISTANCES],
     };
 
-    /// The bits by which a sample that equals another one surprises, at most those of a hash.
-    pub(crate) const fn bits(&self) -> u32 {
+    /// The bits by which a sample that equals another one surprises, at most those of a hash, which are 8.
+    pub const fn bits(&self) -> u32 {
         match self.looked.checked_div(self.elsewhere.saturating_add(1)) {
             Some(ratio @ 1..) => {
                 if ratio.ilog2() < 8 {
@@ -78,11 +90,40 @@ impl Runs {
         }
     }
 
-    /// The length from which a run is not by chance; `None` where nothing can be said.
-    pub(crate) fn needed(&self) -> Option<u32> {
+    /// The length from which a run is not by chance, in samples: 6, 7, 8, 11 or 16, and 32 at one bit; `None` where nothing can be said.
+    pub fn needed(&self) -> Option<u32> {
         BITS.checked_add(self.bits().saturating_sub(1))?
             .checked_div(self.bits())
             .map(|length| length.max(6))
+    }
+
+    /// The byte by which a sample of one axis is compared with others.
+    pub const fn hash(count: i32) -> u8 {
+        byte(mix(0, count))
+    }
+
+    /// A hash of the last four of these bytes, of which the last one is the lowest, if such a window is remembered. One in eight is.
+    #[inline]
+    pub const fn window(bytes: u32) -> Option<u32> {
+        let mixed = mixed(bytes);
+        match is_entered(mixed) {
+            true => Some(mixed),
+            false => None,
+        }
+    }
+
+    /// Whether a run at a distance has the length of a block, where samples surprise by so many bits: half a distance, a whole one, or
+    /// one and a half, or two. A sample or two at its ends may equal by chance.
+    pub fn is_whole(distance: u16, length: u32, bits: u32) -> bool {
+        let at_an_end = match bits {
+            0 | 1 => 3,
+            _ => 2,
+        };
+        let twice = length.saturating_mul(2);
+        (1..=4_u32).any(|times| {
+            let halves = u32::from(distance).saturating_mul(times);
+            twice.abs_diff(halves) <= 2 * at_an_end
+        })
     }
 
     /// Counts a run. A buffer of two halves leaves runs of half the distance, one of a single part those of the whole distance, and more
@@ -97,17 +138,7 @@ impl Runs {
             return;
         }
         self.long = self.long.saturating_add(1);
-        // A sample beside the block may equal by chance.
-        let beside = match self.bits() {
-            0 | 1 => 3,
-            _ => 2,
-        };
-        let twice = length.saturating_mul(2);
-        let is_whole = (1..=4_u32).any(|times| {
-            let halves = u32::from(distance).saturating_mul(times);
-            twice.abs_diff(halves) <= 2 * beside
-        });
-        if !is_whole {
+        if !Self::is_whole(distance, length, self.bits()) {
             return;
         }
         self.whole = self.whole.saturating_add(1);
@@ -163,6 +194,16 @@ impl AtDistance {
     }
 }
 
+/// The byte of a hash by which samples are compared. Its bits depend on all bits of the counts.
+const fn byte(hash: u32) -> u8 {
+    (hash >> 24) as u8
+}
+
+/// The hash of a window of four such bytes.
+const fn mixed(window: u32) -> u32 {
+    window.wrapping_mul(0x2C1B_3C6D)
+}
+
 /// The hash of some counts and another one.
 #[inline(always)]
 pub(super) const fn mix(hash: u32, count: i32) -> u32 {
@@ -196,7 +237,7 @@ pub(crate) struct Stale {
     /// The samples of the present run.
     length: u32,
     seen: [Seen; ENTRIES],
-    pub(crate) runs: Runs,
+    pub(crate) runs: StaleRuns,
 }
 
 impl Stale {
@@ -206,19 +247,18 @@ impl Stale {
         distance: 0,
         length: 0,
         seen: [Seen { tag: 0, time: 0 }; ENTRIES],
-        runs: Runs::NEW,
+        runs: StaleRuns::NEW,
     };
 
     /// Adds the hash of a sample of all axes. `time` is the number of samples before it since a gap.
     #[inline(always)]
     pub(super) fn push(&mut self, time: u32, hash: u32) {
-        // The upper bits depend on all bits of the counts.
-        let hash = hash >> 24;
+        let hash = byte(hash);
         if let Some(place) = self.ring.get_mut(time as usize % RING) {
-            *place = hash as u8;
+            *place = hash;
         }
-        self.window = self.window << 8 | hash;
-        let mixed = self.window.wrapping_mul(0x2C1B_3C6D);
+        self.window = self.window << 8 | u32::from(hash);
+        let mixed = mixed(self.window);
         if self.distance > 0 || is_entered(mixed) {
             self.look(time, mixed);
         }
@@ -286,18 +326,18 @@ impl Stale {
     }
 
     /// What is counted after a gap at this place, which ends the present run.
-    pub(super) fn runs_at_gap(&self) -> Runs {
+    pub(super) fn runs_at_gap(&self) -> StaleRuns {
         let mut runs = self.runs.clone();
         runs.add(self.distance, self.length);
         runs
     }
 
-    pub(super) fn with_runs(runs: Runs) -> Self {
+    pub(super) fn with_runs(runs: StaleRuns) -> Self {
         Self { runs, ..Self::NEW }
     }
 }
 
-impl Runs {
+impl StaleRuns {
     /// The distance with most runs, and the runs of it, of half and of twice of it.
     pub(crate) fn most(&self) -> Option<(u16, AtDistance)> {
         let most = self.distances.iter().max_by_key(|own| own.runs)?;

@@ -2,7 +2,7 @@
 
 use super::{
     Earlier, EqualAxes, LEARNT, Reads,
-    stale::{Runs, Stale},
+    stale::{Stale, StaleRuns},
 };
 use crate::record::faults::JointRepeats;
 use serde::{Deserialize, Serialize};
@@ -13,7 +13,7 @@ struct Stored {
     earlier: Earlier,
     repeats: JointRepeats,
     equal: EqualAxes,
-    runs: Runs,
+    runs: StaleRuns,
 }
 
 impl<const AXES: usize> Reads<AXES> {

@@ -4,7 +4,7 @@
 //! follows a record is not the same under any cut, so that pieces count sizes and runs of the whole instead, and judge them by
 //! the limits of `Integrity` in the end.
 
-use super::{Pieces, runs::Closed, sizes::Sizes};
+use super::{Pieces, runs::Closed, sizes::Sizes, stale};
 use crate::OCTAVES;
 use allanite::{
     curve::carries_rounding,
@@ -42,12 +42,13 @@ struct Whole {
     runs: Closed,
     ends: [i64; 2],
     hits: u64,
+    stale: stale::Runs,
 }
 
 impl Pieces {
     /// Why the Allan curve of this record is not valid; `None` where it is valid. If there are several reasons, it is the one that
     /// may have caused the others: misread counts, rails, repeated samples, stuck values, noise below half a count, motion,
-    /// spikes, missing samples. However the record is cut, the answer is the same.
+    /// spikes, missing samples, blocks that are there twice. However the record is cut, the answer is the same.
     pub fn invalid(&self) -> Option<Reason> {
         let whole = self.whole()?;
         let limits = &Limits::DEFAULT;
@@ -65,7 +66,8 @@ impl Pieces {
         let of_rest = of_noise.or_else(|| whole.disturbed(limits));
         let (missing, sent) = (whole.missing, samples.saturating_add(whole.missing));
         let is_missing = exceeds(missing.into(), sent.into(), limits.missing_per_mille);
-        of_rest.or(is_missing.then_some(Reason::Missing { missing, sent }))
+        let of_samples = of_rest.or(is_missing.then_some(Reason::Missing { missing, sent }));
+        of_samples.or_else(|| whole.stale.verdict(samples))
     }
 
     /// Whether rounding is carried over to the next sample.
@@ -84,6 +86,7 @@ impl Pieces {
         let mut sizes = first.sizes().clone();
         let mut extremes = first.extremes().clone();
         let mut runs = first.runs().all();
+        let mut stale = first.stale().runs().clone();
         let mut end = first.range().end;
         for piece in pieces {
             for (own, sizes) in sizes.iter_mut().zip(piece.sizes()) {
@@ -91,6 +94,7 @@ impl Pieces {
             }
             extremes.join(piece.extremes());
             piece.runs().add_to(&mut runs);
+            stale.join(piece.stale().runs());
             end = piece.range().end;
         }
         let samples = self.samples();
@@ -111,6 +115,7 @@ impl Pieces {
             runs,
             ends: extremes.ends(),
             hits: extremes.hits(Limits::DEFAULT.rails),
+            stale,
         })
     }
 }

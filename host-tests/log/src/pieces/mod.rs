@@ -23,6 +23,7 @@ mod powers;
 mod runs;
 mod sizes;
 mod squares;
+mod stale;
 mod state;
 #[cfg(test)]
 mod tests;

@@ -7,6 +7,7 @@ use super::{
     runs::Runs,
     sizes::Sizes,
     squares::{Angle, NEAR, Near, difference},
+    stale::Stale,
 };
 use crate::sizes::{LEVELS, MOST_SAMPLES, OCTAVES, SEGMENT};
 use serde::{Deserialize, Serialize};
@@ -43,6 +44,7 @@ pub(super) struct Piece {
     repeats: u64,
     runs: Runs,
     extremes: Extremes,
+    stale: Stale,
 }
 
 /// The block lengths whose differences are counted by their sizes, as places among the lengths, which are 1, 64 and 512 samples; and
@@ -151,6 +153,7 @@ impl Piece {
             repeats,
             sizes,
             extremes,
+            stale: Stale::of(counts),
         }
     }
 
@@ -194,6 +197,11 @@ impl Piece {
     /// Runs of equal samples.
     pub(super) fn runs(&self) -> &Runs {
         &self.runs
+    }
+
+    /// Blocks that are there twice.
+    pub(super) fn stale(&self) -> &Stale {
+        &self.stale
     }
 
     /// The extreme samples.
@@ -252,6 +260,7 @@ impl Piece {
             self.edges[length] = joint.edges();
         }
         self.extremes.join(&next.extremes);
+        self.stale.join(&next.stale);
         self.total = self.total.wrapping_add(next.total);
         self.end = next.end;
     }
@@ -282,6 +291,7 @@ impl Piece {
             && are_sizes
             && self.runs.is_possible(self.samples(), self.repeats)
             && self.extremes.is_possible(self.samples())
+            && self.stale.is_possible(self.samples())
             && edges.all(|is_possible| is_possible)
             && levels.all(|is_possible| is_possible)
             && octaves.all(|is_possible| is_possible)

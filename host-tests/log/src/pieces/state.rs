@@ -4,7 +4,7 @@ use super::Pieces;
 use crate::failure::Failure;
 
 /// What the bytes begin with.
-const VERSION: &str = "allanite pieces 2";
+const VERSION: &str = "allanite pieces 3";
 
 impl Pieces {
     /// The state as bytes, by postcard. Equal states have equal bytes.

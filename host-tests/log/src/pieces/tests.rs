@@ -17,6 +17,21 @@ fn counts(random: &mut Random, number: usize, amplitude: i32) -> Vec<i32> {
     (0..number).map(|_| count()).collect()
 }
 
+/// Leaves blocks where they were already, as a buffer that is not refilled.
+fn again(random: &mut Random, counts: &mut [i32]) {
+    for _ in 0..counts.len() / 800 {
+        let distance = random.random_range(8..=130);
+        let block = distance * random.random_range(1..=5) / 2;
+        let last = counts.len().saturating_sub(block + distance);
+        if last > 0 {
+            let at = random.random_range(0..last) + distance;
+            for place in at..at + block {
+                counts[place] = counts[place - distance];
+            }
+        }
+    }
+}
+
 fn pieces() -> Pieces {
     Pieces::new(100.0, 0.01).unwrap()
 }
@@ -64,7 +79,8 @@ fn however_a_record_is_cut_and_joined_its_bytes_are_the_same() {
             _ => random.random_range(1..600),
         };
         let amplitude = [3, 1000, 1 << 24, i32::MAX][trial % 4];
-        let counts = counts(&mut random, samples, amplitude);
+        let mut counts = counts(&mut random, samples, amplitude);
+        again(&mut random, &mut counts);
         let first = [0, random.random_range(0..100_000)][trial % 2];
         let cuts = random.random_range(0..20);
         let kept = [1.0, 0.7][trial / 2 % 2];

@@ -3,7 +3,7 @@
 //! The formats of tables are read by crates of other projects, which allocate what a file claims, and a few hundred bytes
 //! can claim gigabytes. The end of such a process is a message about the file, and not the end of the program.
 
-use super::rewrite::{Written, rewrite};
+use super::{arrow_rows::Written, rewrite::rewrite};
 use crate::{
     failure::{Failure, Place},
     source::TableKind as Kind,

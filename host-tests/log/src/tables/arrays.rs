@@ -1,9 +1,8 @@
 //! Named arrays as columns of a table: what MATLAB and HDF5 have in common.
 
 use super::{
-    arrow_rows::Rows,
+    arrow_rows::{Rows, Written},
     choice::{Candidate, choose},
-    rewrite::Written,
     wrong::Wrong,
 };
 use crate::converted::Text;

@@ -29,6 +29,9 @@ const TIMES: &str = "%H:%M:%S%.9f";
 const FIRST: usize = 1 << 13;
 const LAST: usize = 1 << 11;
 
+/// What was written of a table: a note about it, and what the file of its numbers holds, if there is one.
+pub(super) type Written = (Option<String>, Option<Layout>);
+
 /// The rows of a table.
 pub(super) struct Rows<'a> {
     text: Writer<&'a mut Text>,

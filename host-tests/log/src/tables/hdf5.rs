@@ -2,10 +2,10 @@
 
 use super::{
     arrays::{self, Array, Values},
+    arrow_rows::Written,
     hdf5_left_out::LeftOut,
     hdf5_links,
     hdf5_lowest::Lowest,
-    rewrite::Written,
     wrong::Wrong,
 };
 use crate::{

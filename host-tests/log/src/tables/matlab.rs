@@ -2,7 +2,7 @@
 
 use super::{
     arrays::{self, Array, Values},
-    rewrite::Written,
+    arrow_rows::Written,
     wrong::Wrong,
 };
 use crate::converted::Text;

@@ -1,11 +1,12 @@
 //! Writes the text of a table with the reader of its format.
 
-use super::{ardupilot, arrow, betaflight, hdf5, matlab, workbook, wrong::Wrong};
+use super::{
+    ardupilot, arrow, arrow_rows::Written, betaflight, hdf5, matlab, workbook, wrong::Wrong,
+};
 use crate::{
     converted::Text,
     failure::{Failure, Place, one_line},
     source::TableKind as Kind,
-    values::Layout,
 };
 use std::{
     fs::File,
@@ -15,9 +16,6 @@ use std::{
 
 /// The remedy of a damaged file.
 const COPY: &str = "copy or record the file again";
-
-/// What was written of a table: a note about it, and what the file of its numbers holds, if there is one.
-pub(super) type Written = (Option<String>, Option<Layout>);
 
 /// Writes the text of a table to a file, and its numbers to another one if that is given and the text would be long.
 pub(super) fn rewrite(

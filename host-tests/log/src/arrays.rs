@@ -74,6 +74,7 @@ impl<'a> Arrays<'a> {
                 names: has_names.then(|| names.collect()),
                 looks,
                 heads,
+                longer: Vec::new(),
                 tags: Vec::new(),
                 defined: Vec::new(),
                 said: String::new(),

@@ -331,6 +331,7 @@ mod tests {
             names: names.map(|names| names.iter().map(|&name| name.into()).collect()),
             looks: looks.to_vec(),
             heads: Vec::new(),
+            longer: Vec::new(),
             tags: Vec::new(),
             defined: Vec::new(),
             said: String::new(),

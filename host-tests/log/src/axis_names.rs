@@ -9,8 +9,9 @@ use super::{
 use crate::unit::Sensor;
 
 /// Words for a rate of rotation, with an underscore between words.
-const ROTATION: [&str; 17] = [
+const ROTATION: [&str; 18] = [
     "gyr",
+    "pqr",
     "angular_vel",
     "angularvel",
     "angular_rate",
@@ -33,7 +34,8 @@ const ROTATION: [&str; 17] = [
 const ACCELERATION: [&str; 3] = ["acc", "specific_force", "a_rs_s_"];
 
 /// Parts of names of what is neither: other quantities, what is computed from the axes, and halves of a number.
-const OTHERS: [&str; 15] = [
+const OTHERS: [&str; 16] = [
+    "magnet",
     "temp",
     "time",
     "cov",

@@ -114,6 +114,7 @@ impl Bag {
                 names: Some(COLUMNS.map(String::from).to_vec()),
                 looks: vec![Look::Number; COLUMNS.len()],
                 heads: (0..COLUMNS.len()).map(column).collect(),
+                longer: Vec::new(),
                 tags: Vec::new(),
                 defined: Vec::new(),
                 said: String::new(),

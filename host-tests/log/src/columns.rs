@@ -1,6 +1,6 @@
 //! Finds the columns of a log that are the sensor's axes.
 
-use super::{ColumnChoice, CovariateChoice, names};
+use super::{ColumnChoice, CovariateChoice, names, wrap::BITS};
 use crate::{
     failure::{Failure, Place, did_you_mean, quoted},
     unit::Sensor,
@@ -27,6 +27,8 @@ pub(super) struct Columns {
     pub(super) looks: Vec<Look>,
     /// The first values of each column that are numbers.
     pub(super) heads: Vec<Vec<f64>>,
+    /// More of the first values of each column of numbers or dates, where the log is a text.
+    pub(super) longer: Vec<Vec<f64>>,
     /// The first values of each column of text, if they are known, and of each column of numbers that mark sensors.
     pub(super) tags: Vec<Vec<String>>,
     /// The columns that are axes by the definition of the log's format, and their sensors. If there are any, names
@@ -53,12 +55,29 @@ impl Look {
     /// The look of a column whose first values are these numbers.
     pub(super) fn of_numbers(numbers: &[f64]) -> Self {
         // Nine values of white noise rise throughout with a probability of 1 in 9!.
-        if numbers.len() > 8 && numbers.is_sorted_by(|a, b| a < b) {
+        let rises = || numbers.is_sorted_by(|a, b| a < b) || rises_but_for_an_overflow(numbers);
+        if numbers.len() > 8 && rises() {
             Self::Rising
         } else {
             Self::Number
         }
     }
+}
+
+/// Whether numbers rise throughout but for one fall, from just below the largest count of a timer to just above zero.
+fn rises_but_for_an_overflow(numbers: &[f64]) -> bool {
+    let mut falls = (1..numbers.len()).filter(|&at| numbers[at] <= numbers[at - 1]);
+    let (Some(at), None) = (falls.next(), falls.next()) else {
+        return false;
+    };
+    let (before, behind) = numbers.split_at(at);
+    let ([first, .., last], [zero, .., end]) = (before, behind) else {
+        return false;
+    };
+    let step = (last - first + end - zero) / (numbers.len() - 2) as f64;
+    let is_near = |distance: f64| (0.0..4.0 * step).contains(&distance);
+    let mut largest = BITS.into_iter().map(|bits| 2f64.powi(bits));
+    is_near(*zero) && largest.any(|largest| is_near(largest - last))
 }
 
 impl Columns {

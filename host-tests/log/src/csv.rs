@@ -85,6 +85,7 @@ impl Csv {
                 names: preamble.names,
                 looks: Vec::new(),
                 heads: Vec::new(),
+                longer: Vec::new(),
                 tags: Vec::new(),
                 defined: Vec::new(),
                 said: said(path, &preamble.said),
@@ -128,6 +129,12 @@ impl Csv {
             _ => Vec::new(),
         });
         self.columns.tags = tags.collect();
+        let looks = self.columns.looks.iter().enumerate();
+        let longer = looks.map(|(column, look_of)| match look_of {
+            Look::Text => Vec::new(),
+            _ => look(&rows, column).1,
+        });
+        self.columns.longer = longer.collect();
         Ok(!rows.is_empty())
     }
 

@@ -146,6 +146,7 @@ mod tests {
             names: names.map(|names| names.split(',').map(str::to_owned).collect()),
             looks: vec![Look::Number; 7],
             heads: vec![Vec::new(); 7],
+            longer: Vec::new(),
             tags: Vec::new(),
             defined: Vec::new(),
             said: String::new(),

@@ -77,6 +77,7 @@ impl Npy {
                 names: None,
                 looks: Vec::new(),
                 heads: Vec::new(),
+                longer: Vec::new(),
                 tags: Vec::new(),
                 defined: Vec::new(),
                 said: String::new(),

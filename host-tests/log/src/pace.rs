@@ -44,6 +44,13 @@ impl Pace {
         Self::of_ticks(first, unit.per_second())
     }
 
+    /// The pace of regular stamps that are cut to whole milliseconds or microseconds, which needs many of them where the rate is near
+    /// one that is not cut. Returns `None` if `first` are no such stamps.
+    pub(super) fn of_cut(first: &[f64], unit: TimeUnit) -> Option<Self> {
+        let per_second = unit.per_second();
+        even(first, per_second).or_else(|| steady(first, per_second))
+    }
+
     /// The pace of the stamps `first`, of which so many ticks are a second.
     pub(super) fn of_ticks(first: &[f64], per_second: f64) -> Option<Self> {
         let mut steps = steps(first);
@@ -165,6 +172,45 @@ pub(super) fn possible_units(first: &[f64]) -> Option<Vec<TimeUnit>> {
 fn steps(stamps: &[f64]) -> Vec<f64> {
     let steps = stamps.windows(2).map(|pair| pair[1] - pair[0]);
     steps.filter(|&step| step > 0.0).collect()
+}
+
+/// The pace of stamps that are cut to whole milliseconds where the step is about one, and scatter besides: steps of none, one and two
+/// follow each other in no order. The stamps stay near a straight line, from which samples that are lost at random would lead away by
+/// more and more.
+fn steady(first: &[f64], per_second: f64) -> Option<Pace> {
+    const RESOLUTION_S: f64 = 1e-3;
+    /// The steps that differ from the usual one, from which on losses would lead far away.
+    const ODD: usize = 12;
+    /// The range of the distances from the line, in units of the resolution: one is that of cutting.
+    const NEAR: f64 = 2.0;
+    let resolution = RESOLUTION_S * per_second;
+    let (start, end) = (first.first()?, first.last()?);
+    let mean = (end - start) / (first.len() - 1) as f64;
+    let places = first.iter().zip(0..);
+    let distances = places.map(|(stamp, row)| stamp - start - mean * f64::from(row));
+    let (least, most) = distances.fold((0.0, 0.0), |(least, most): (f64, f64), distance| {
+        (least.min(distance), most.max(distance))
+    });
+    let units: Vec<f64> = first
+        .windows(2)
+        .map(|pair| (pair[1] - pair[0]) / resolution)
+        .collect();
+    let are_units = units.iter().all(|one| (one - one.round()).abs() < 0.01);
+    let odd = units.iter().filter(|one| (*one - 1.0).abs() > 0.5).count();
+    let longest = units.iter().copied().fold(0.0, f64::max);
+    let is_steady = are_units && odd >= ODD && 2 * odd < units.len();
+    if !is_steady || most - least > NEAR * resolution || longest > 2.5 {
+        return None;
+    }
+    let advancing = units.iter().filter(|one| **one > 0.5).count();
+    let rows = units.len() as f64 / advancing as f64;
+    Some(Pace {
+        per_second,
+        step: mean * rows,
+        longest: (longest + 0.5) * resolution,
+        scatter: 0.5 * resolution,
+        rows,
+    })
 }
 
 /// The pace of regular stamps that are cut to whole milliseconds or microseconds. Their steps take two values that differ by the

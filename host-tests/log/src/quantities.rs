@@ -33,6 +33,13 @@ const NEAR: f64 = 15.0;
 /// The differences of neighbours of a smooth quantity have a variance below this share of that of white noise. Chosen by hand.
 const SMOOTH: f64 = 0.05;
 
+/// The differences of angles have a variance below this share in so many rows. Chosen by hand.
+const SMOOTHEST: f64 = 0.02;
+const MANY_ROWS: usize = 256;
+
+/// Those of noise have one above this share.
+const ROUGH: f64 = 0.5;
+
 /// A flag has its usual value in at least this share of the rows.
 const USUAL: f64 = 0.9;
 
@@ -151,13 +158,23 @@ impl Columns {
         };
         let is_gravity = GRAVITIES.iter().any(|range| range.contains(&mean))
             || (COUNTS_OF_GRAVITY.iter().any(is_near) && are_counts());
-        is_gravity && scatter < SCATTERS.0 * mean
+        // The noise of an accelerometer is that of a sensor on all axes, or rounded away.
+        let roughness = three.iter().map(|&column| self.roughness(column));
+        let roughness: Vec<f64> = roughness.filter(|one| one.is_finite()).collect();
+        let is_smooth = roughness.iter().any(|&one| one <= SMOOTH);
+        let is_rough = roughness.iter().any(|&one| one > ROUGH);
+        is_gravity && scatter < SCATTERS.0 * mean && !(is_smooth && is_rough)
     }
 
     fn is_quaternion(&self, four: &[usize]) -> bool {
         let is_one =
             |(mean, scatter): (f64, f64)| (mean - 1.0).abs() < SCATTERS.1 && scatter < SCATTERS.1;
         self.length(four).is_some_and(is_one)
+    }
+
+    /// The variance of differences of neighbours as a share of that of white noise; NaN if the first values are all the same.
+    fn roughness(&self, column: usize) -> f64 {
+        Statistics::of(self.head(column)).roughness
     }
 
     fn head(&self, column: usize) -> &[f64] {
@@ -220,6 +237,7 @@ impl Columns {
         // A comment `unit=deg/s` says that all columns are rates.
         let is_told = self.said.contains("unit=") || !(4..=MOST_AXES).contains(&columns.len());
         if shown.gravity.is_empty() && is_told {
+            self.check_for_angles(path, columns)?;
             return Ok(None);
         }
         let three = |first: usize| vec![first, first + 1, first + 2];
@@ -233,13 +251,54 @@ impl Columns {
             }
             (None | Some(Sensor::Gyro), gravity) if gravity.len() <= 1 => {
                 let is_gyro = gravity.is_empty() || self.is_near(&shown.open);
-                if (1..=3).contains(&shown.open.len()) && is_gyro {
+                let is_whole =
+                    shown.open.len() == 3 || !self.is_beside_angles(&shown.open, columns);
+                if (1..=3).contains(&shown.open.len()) && is_gyro && is_whole {
                     return Ok(Some((Sensor::Gyro, shown.open)));
                 }
             }
             _ => {}
         }
         Err(self.open_choice(path, &shown, columns))
+    }
+
+    /// Checks that three columns of a text are not angles.
+    ///
+    /// # Errors
+    /// When all of them are smooth.
+    fn check_for_angles(&self, path: &Path, columns: &[usize]) -> Result<(), Failure> {
+        let &[first, second, third] = columns else {
+            return Ok(());
+        };
+        let is_smooth = |column: &usize| {
+            let values = self.longer.get(*column).map_or(&[][..], Vec::as_slice);
+            values.len() >= MANY_ROWS && Statistics::of(values).roughness <= SMOOTHEST
+        };
+        if self.said.contains("unit=") || !columns.iter().all(is_smooth) {
+            return Ok(());
+        }
+        Err(Place::file(path).failure(
+            format!(
+                "{} hardly change from row to row, as angles do and the rates of a sensor at rest do not",
+                self.list(columns)
+            ),
+            format!(
+                "give rates, or --columns gx={},gy={},gz={} if they are",
+                first + 1,
+                second + 1,
+                third + 1
+            ),
+        ))
+    }
+
+    /// Whether another column next to these ones is smooth, as an angle is, so that they may be angles too.
+    fn is_beside_angles(&self, open: &[usize], columns: &[usize]) -> bool {
+        let is_next = |column: &usize| open.iter().any(|own| own.abs_diff(*column) == 1);
+        let is_smooth = |column: &usize| {
+            self.head(*column).len() >= LEAST_ROWS && self.roughness(*column) <= SMOOTH
+        };
+        let mut others = columns.iter().filter(|column| !open.contains(column));
+        others.any(|column| is_next(column) && is_smooth(column))
     }
 
     /// Whether the mean of three columns is near zero beside their scatter, as that of a gyro at rest is.
@@ -331,6 +390,7 @@ mod tests {
             names: None,
             looks: vec![Look::Number; values.len()],
             heads: values.iter().map(head).collect(),
+            longer: Vec::new(),
             tags: Vec::new(),
             defined: Vec::new(),
             said: String::new(),

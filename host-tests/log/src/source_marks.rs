@@ -2,7 +2,8 @@
 //!
 //! Two sensors never have the same bias, and hardly ever the same noise. So the values of neighbouring rows with different
 //! marks differ by more than chance, whereas those beside a flag, an index of packets or a coarse temperature do not. Only
-//! neighbours are compared, so that no drift counts. Marks come in an order that the marks before them foretell.
+//! neighbours are compared, so that no drift counts. Marks come in an order that the marks before them foretell, or their values are
+//! far apart.
 
 use super::field::{Field as _, Text};
 use csv::ByteRecord;
@@ -16,6 +17,10 @@ const LEAST_SHARE: f64 = 0.05;
 
 /// The marks before a mark foretell it in at least this share of the rows. Chosen by hand.
 const FORETOLD: f64 = 0.85;
+
+/// Rows of sensors that are sampled at almost the same time change places at random. Their values differ by so much more.
+/// Chosen by hand.
+const UNFORETOLD: f64 = 10.0;
 
 /// The number of marks that foretell the next one.
 const BEFORE: usize = 3;
@@ -45,9 +50,14 @@ pub(super) fn are_marks(rows: &[ByteRecord], numbers: &[Vec<Option<f64>>], colum
     }
     let least = LEAST_SHARE * rows.len() as f64;
     let is_frequent = counts.values().all(|&count| count as f64 >= least);
-    if counts.len() < 2 || !is_frequent || !are_foretold(&marks) {
+    if counts.len() < 2 || !is_frequent {
         return false;
     }
+    let times = if are_foretold(&marks) {
+        1.0
+    } else {
+        UNFORETOLD
+    };
     let others = numbers
         .iter()
         .enumerate()
@@ -58,7 +68,7 @@ pub(super) fn are_marks(rows: &[ByteRecord], numbers: &[Vec<Option<f64>>], colum
     let pairs =
         (0..keys.len()).flat_map(|one| (one + 1..keys.len()).map(move |other| (one, other)));
     let mut pairs = pairs.map(|(one, other)| [keys[one], keys[other]]);
-    pairs.any(|pair| are_different(&bits, &others, pair))
+    pairs.any(|pair| are_different(&bits, &others, pair) > times)
 }
 
 /// The square of the difference of means, in standard deviations, beyond which rows that take turns are those of several
@@ -110,11 +120,12 @@ pub(super) fn turns_of_decimals(rows: &[ByteRecord]) -> Option<usize> {
     let decimals = |row: &ByteRecord, column: usize| {
         let field = row.get(column)?.trim_ascii();
         let point = field.iter().position(|&byte| byte == b'.')?;
-        let digits = &field[point + 1..];
-        digits
-            .iter()
-            .all(u8::is_ascii_digit)
-            .then_some(digits.len())
+        let behind = &field[point + 1..];
+        let is_exponent = |byte: &u8| matches!(byte, b'e' | b'E');
+        let exponent = behind.iter().position(is_exponent);
+        let digits = &behind[..exponent.unwrap_or(behind.len())];
+        let are_digits = digits.iter().all(u8::is_ascii_digit);
+        are_digits.then_some((exponent.is_some(), digits.len()))
     };
     [2, 3].into_iter().find(|&turns| {
         let take_turns = |column: &usize| {
@@ -184,8 +195,8 @@ fn are_foretold(marks: &[f64]) -> bool {
     usual as f64 >= FORETOLD * bits.len().saturating_sub(BEFORE) as f64
 }
 
-/// Whether the values beside two marks differ.
-fn are_different(marks: &[u64], columns: &[&Vec<Option<f64>>], [one, other]: [u64; 2]) -> bool {
+/// By how much the values beside two marks differ, where 1 is more than chance.
+fn are_different(marks: &[u64], columns: &[&Vec<Option<f64>>], [one, other]: [u64; 2]) -> f64 {
     let (mut sum, mut compared) = (0.0, 0);
     for values in columns {
         if is_time(values) {
@@ -198,7 +209,7 @@ fn are_different(marks: &[u64], columns: &[&Vec<Option<f64>>], [one, other]: [u6
             compared += 1;
         }
     }
-    sum > DIFFERENT.0 + DIFFERENT.1 * f64::from(compared)
+    sum / (DIFFERENT.0 + DIFFERENT.1 * f64::from(compared))
 }
 
 /// The square of the mean difference between neighbouring rows with these marks, in its standard deviations.
@@ -283,6 +294,10 @@ mod tests {
             assert!(are_sensors(taking_turns, [one, other]));
             assert!(are_sensors(in_blocks, [one, other]));
         }
+        // Rows of almost the same time change places.
+        let changing =
+            |row: usize| usize::from(row % 2 == 0) ^ usize::from(row / 2 * 7919 % 13 < 5);
+        assert!(are_sensors(changing, [one, (8.0, 1.0)]));
     }
 
     #[test]
@@ -310,12 +325,34 @@ mod tests {
     }
 
     #[test]
+    fn rows_whose_decimals_take_turns_are_those_of_sensors() {
+        let rows = |forms: [fn(f64) -> String; 2]| -> Vec<ByteRecord> {
+            let row = |row: u32| {
+                let number = 0.001 + 1e-5 * f64::from(row * row % 97);
+                let own = forms[row as usize % 2](number);
+                ByteRecord::from(vec![format!("{row}"), own.clone(), own])
+            };
+            (0..64).map(row).collect()
+        };
+        let fixed = |number: f64| format!("{number:.4}");
+        assert_eq!(turns_of_decimals(&rows([fixed, fixed])), None);
+        for other in [
+            |number: f64| format!("{number:.6}"),
+            |number: f64| format!("{number:.4e}"),
+        ] {
+            assert_eq!(turns_of_decimals(&rows([fixed, other])), Some(2));
+        }
+    }
+
+    #[test]
     fn an_index_a_flag_and_a_coarse_quantity_mark_no_sensors() {
         let (one, other) = ((0.0, 1.0), (2.0, 1.0));
         assert!(!are_sensors(|row| row % 2, [one, one]));
         assert!(!are_sensors(|row| row % 25, [one, other]));
         assert!(!are_sensors(|row| usize::from(row % 97 == 5), [one, other]));
         assert!(!are_sensors(|row| row * row / 7 % 5, [one, one]));
+        // A flag that no row foretells, beside which values are a little larger.
+        assert!(!are_sensors(|row| row * row / 7 % 2, [one, (0.3, 1.0)]));
         assert!(!are_sensors(|row| row / 300, [one, one]));
     }
 }

@@ -106,7 +106,8 @@ impl Columns {
         }
         let head = &self.heads[column];
         let pace_of = |unit| {
-            let pace = Pace::of(head, unit)?;
+            let stamps = self.longer.get(column).map_or(&[][..], Vec::as_slice);
+            let pace = Pace::of_cut(stamps, unit).or_else(|| Pace::of(head, unit))?;
             Some(match self.are_written_twice(column) {
                 true => pace.without_bursts(),
                 false => pace,

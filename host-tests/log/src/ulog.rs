@@ -126,6 +126,7 @@ impl Ulog {
             columns: Columns {
                 looks: vec![Look::Number; names.len()],
                 heads: vec![Vec::new(); names.len()],
+                longer: Vec::new(),
                 tags: Vec::new(),
                 defined: defined(&chosen.subscription.topic, &names),
                 said: String::new(),

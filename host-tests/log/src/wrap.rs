@@ -4,7 +4,7 @@ use super::{field::Stamp, pace::Pace};
 use crate::failure::plural;
 
 /// The bits of counters whose overflow is recognised: timers of microcontrollers, and signed numbers without their sign.
-const BITS: [i32; 4] = [16, 24, 31, 32];
+pub(super) const BITS: [i32; 4] = [16, 24, 31, 32];
 
 /// The units in which a counter counts, in a second. It may be written in another one, such as microseconds as seconds.
 const COUNTED: [(f64, &str); 4] = [(1.0, "s"), (1e3, "ms"), (1e6, "µs"), (1e9, "ns")];
@@ -18,6 +18,9 @@ const AGREES: (f64, f64) = (10.0, 0.01);
 
 /// Once a counter has wrapped, as many samples may be lost where it wraps again. Chosen by hand.
 const MOST_LOST: f64 = 16.0;
+
+/// A counter of so many samples is longer than usual losses, so that half of it is no loss. Chosen by hand.
+const LONG: f64 = 1e4;
 
 /// A number at which stamps begin anew, in ticks, and how it is called.
 #[derive(Clone, Debug, PartialEq)]
@@ -80,7 +83,13 @@ impl Wraps {
             }
         }
         match (self.times, self.moduli.first()) {
-            (times @ 1.., Some(modulus)) => stamp.later(times as f64 * modulus.ticks),
+            (times @ 1.., Some(modulus)) => {
+                // Behind the rows of a sensor that wrapped, those of the next one begin before the wrap again.
+                let goes_back = modulus.ticks > LONG * pace.step
+                    && last.is_some_and(|last| stamp.since(last) > 0.5 * modulus.ticks);
+                self.times -= u64::from(goes_back);
+                stamp.later((times - u64::from(goes_back)) as f64 * modulus.ticks)
+            }
             _ => stamp,
         }
     }
@@ -174,5 +183,16 @@ mod tests {
             let (found, report) = unwrapped(&stamps, TimeUnit::Us);
             assert_eq!((found, report), (stamps, None), "{back}");
         }
+    }
+
+    /// Two sensors, whose rows follow each other in a file, are read over midnight: each of them wraps.
+    #[test]
+    fn the_rows_of_another_sensor_behind_a_wrap_go_back() {
+        let of_one = (0..200).map(|i| (86_399.0 + 0.02 * f64::from(i)) % 86_400.0);
+        let of_one: Vec<f64> = of_one.collect();
+        let (found, _) = unwrapped(&[&of_one[..], &of_one[..]].concat(), TimeUnit::S);
+        let [first, second] = [&found[..200], &found[200..]];
+        assert!(first.is_sorted());
+        assert_eq!(first, second);
     }
 }

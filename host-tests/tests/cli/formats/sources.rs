@@ -184,11 +184,12 @@ fn a_curve_of_deviations_is_no_log() {
 }
 
 /// The samples and the rate of a log whose stamps are cut to whole milliseconds.
-fn cut_to_milliseconds(rate_hz: f64, phase: f64, rows: u32) -> Log {
+fn cut_to_milliseconds(rate_hz: f64, phase: f64, scatter_ms: f64, rows: u32) -> Log {
     let mut random = Xoshiro256PlusPlus::seed_from_u64(5);
     let mut text = String::from("millis,gx\n");
     for n in 0..rows {
-        let stamp = (1000.0 * f64::from(n) / rate_hz + phase).floor();
+        let scatter = scatter_ms * random.random_range(-1.0..1.0);
+        let stamp = (1000.0 * f64::from(n) / rate_hz + phase + scatter).floor();
         writeln!(text, "{stamp},{}", noise(&mut random)).unwrap();
     }
     let options = Options {
@@ -201,10 +202,11 @@ fn cut_to_milliseconds(rate_hz: f64, phase: f64, rows: u32) -> Log {
 #[test]
 fn whole_milliseconds_lose_no_sample_of_a_sensor_with_another_rate() {
     for rate_hz in [
-        562.5, 640.0, 667.0, 833.0, 909.0, 952.0, 960.0, 1040.0, 1100.0, 1125.0,
+        562.5, 640.0, 667.0, 833.0, 909.0, 952.0, 960.0, 988.0, 994.0, 1006.0, 1012.0, 1040.0,
+        1100.0, 1125.0,
     ] {
         for phase in [0.0, 0.37, 0.81] {
-            let log = cut_to_milliseconds(rate_hz, phase, 4000);
+            let log = cut_to_milliseconds(rate_hz, phase, 0.0, 4000);
             assert!(
                 (log.rate_hz / rate_hz - 1.0).abs() < 1e-3,
                 "{rate_hz}: {}",
@@ -217,6 +219,20 @@ fn whole_milliseconds_lose_no_sample_of_a_sensor_with_another_rate() {
                 "{rate_hz}"
             );
             assert!(accumulator.bridged().is_empty(), "{rate_hz}");
+        }
+    }
+}
+
+#[test]
+fn whole_milliseconds_of_stamps_that_scatter_lose_no_sample() {
+    for rate_hz in [930.0, 949.7, 975.0, 1030.0, 1060.0] {
+        for scatter_ms in [0.1, 0.3] {
+            let log = cut_to_milliseconds(rate_hz, 0.4, scatter_ms, 20_000);
+            let rate = log.rate_hz;
+            assert!((rate / rate_hz - 1.0).abs() < 1e-3, "{rate_hz}: {rate}");
+            let accumulator: &Accumulator<OCTAVES> = &log.axes[0].accumulator;
+            let counted = (accumulator.samples(), accumulator.gaps());
+            assert_eq!(counted, (20_000, 0), "{rate_hz}, {scatter_ms}");
         }
     }
 }
@@ -348,4 +364,67 @@ fn axes_as_a_dictionary_and_as_runs_and_a_time_as_a_duration_are_read() {
         (names.as_slice(), log.rate_hz),
         (&["gyro_x", "gyro_y", "gyro_z"][..], 200.0)
     );
+}
+
+/// Columns of noise, of velocities or angles, which are sums of it, and of an accelerometer whose last axis feels gravity.
+fn bare(kinds: &[&str]) -> String {
+    let mut random = Xoshiro256PlusPlus::seed_from_u64(8);
+    let mut sums = [[0.6_f64, -0.778, 0.573]; 2];
+    let mut text = String::new();
+    for row in 0..600 {
+        write!(text, "{:.3}", 12.5 + f64::from(row) / 200.0).unwrap();
+        for (kind, sums) in kinds.iter().zip(&mut sums) {
+            for (axis, sum) in sums.iter_mut().enumerate() {
+                let white: f64 = StandardNormal.sample(&mut random);
+                *sum += 2e-4 * white;
+                let value = match *kind {
+                    "rate" => 0.004 * white,
+                    "force" if axis == 2 => 9.81 + 0.02 * white,
+                    "force" => 0.02 * white,
+                    _ => *sum,
+                };
+                write!(text, ",{value:.6}").unwrap();
+            }
+        }
+        text.push('\n');
+    }
+    text
+}
+
+#[test]
+fn velocities_beside_rates_neither_feel_gravity_nor_take_an_axis() {
+    for kinds in [["rate", "velocity"], ["rate", "force"]] {
+        let log = read_text(&bare(&kinds), &Options::default()).unwrap();
+        let names: Vec<&str> = log.axes.iter().map(|axis| axis.name.as_str()).collect();
+        assert_eq!(names, ["gx", "gy", "gz"], "{kinds:?}");
+    }
+}
+
+#[test]
+fn three_angles_without_a_name_are_no_rates() {
+    let expected = "a.csv: column 2, column 3, column 4 hardly change from row to row, as angles do and the rates of a sensor at \
+                    rest do not; give rates, or --columns gx=2,gy=3,gz=4 if they are";
+    assert_eq!(refused(&bare(&["angle"])), expected);
+    read_text(&bare(&["rate"]), &Options::default()).unwrap();
+}
+
+/// Two sensors in one table, of which each has rows of its own.
+#[test]
+fn the_gyro_is_found_beside_an_accelerometer_whose_name_is_known() {
+    let mut random = Xoshiro256PlusPlus::seed_from_u64(9);
+    let mut text = "t_s,pqr[0],pqr[1],pqr[2],acc[0],acc[1],acc[2]\n".to_owned();
+    for n in 0..400 {
+        let [x, y, z] = [(); 3].map(|()| noise(&mut random));
+        match n % 2 {
+            0 => writeln!(text, "{:.4},{x},{y},{z},,,", f64::from(n) / 200.0).unwrap(),
+            _ => writeln!(text, "{:.4},,,,{x},{y},9.8{z}", f64::from(n) / 200.0).unwrap(),
+        }
+    }
+    let log = read_text(
+        &text.replace("9.8-", "9.8").replace("9.80.", "9.80"),
+        &Options::default(),
+    );
+    let log = log.unwrap();
+    assert_eq!(log.axes[0].name, "pqr[0]");
+    assert!((log.rate_hz - 100.0).abs() < 0.1, "{}", log.rate_hz);
 }

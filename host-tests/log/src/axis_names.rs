@@ -52,9 +52,9 @@ const OTHERS: [&str; 16] = [
     "variance",
     "status",
 ];
-const OTHER_TOKENS: [&str; 17] = [
-    "dt", "id", "mag", "magn", "total", "abs", "rms", "mean", "std", "var", "h", "l", "hi", "lo",
-    "high", "low", "msb",
+const OTHER_TOKENS: [&str; 20] = [
+    "magx", "magy", "magz", "dt", "id", "mag", "magn", "total", "abs", "rms", "mean", "std", "var",
+    "h", "l", "hi", "lo", "high", "low", "msb",
 ];
 
 /// Whether a column is named like an axis of this sensor: `gx`, `gyro_y`, `imu.angular_velocity.z`, `Angular Velocity
@@ -214,6 +214,8 @@ mod tests {
             "gyro_x_msb",
             "gx_high",
             "mag_x",
+            "MagX_mG",
+            "magnetometer_x_mG",
             "AngleX(°)",
             "heart_rate",
             "rate",

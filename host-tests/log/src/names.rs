@@ -68,7 +68,10 @@ pub(super) fn is_other(name: &str) -> bool {
     ];
     let first = tokens(&name).next().unwrap_or_default();
     words.iter().any(|word| name.contains(word))
-        || ["i", "n", "id", "mx", "my", "mz", "mag", "lat", "lon", "alt"].contains(&first)
+        || [
+            "i", "n", "id", "mx", "my", "mz", "mag", "magx", "magy", "magz", "lat", "lon", "alt",
+        ]
+        .contains(&first)
         || is_angle(&name)
         || is_velocity(&name)
 }

@@ -23,6 +23,9 @@ const BURSTS: f64 = 1.3;
 /// makes two odd steps, and is no scatter. Chosen by hand; the tests of the clock hold it to a jitter of half a step.
 const SCATTER: (f64, f64) = (10.0, 0.6);
 
+/// The number of stamps in which losses are seldom.
+const FEW: usize = 100;
+
 /// The usual distance between stamps, estimated from the first ones.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Pace {
@@ -48,7 +51,11 @@ impl Pace {
     /// one that is not cut. Returns `None` if `first` are no such stamps.
     pub(super) fn of_cut(first: &[f64], unit: TimeUnit) -> Option<Self> {
         let per_second = unit.per_second();
-        even(first, per_second).or_else(|| steady(first, per_second))
+        // Of few stamps, no sample is lost.
+        let few = first.get(..FEW).unwrap_or(first);
+        even(few, per_second)
+            .or_else(|| even(first, per_second))
+            .or_else(|| steady(first, per_second))
     }
 
     /// The pace of the stamps `first`, of which so many ticks are a second.
@@ -182,7 +189,7 @@ fn steady(first: &[f64], per_second: f64) -> Option<Pace> {
     /// The steps that differ from the usual one, from which on losses would lead far away.
     const ODD: usize = 12;
     /// The range of the distances from the line, in units of the resolution: one is that of cutting.
-    const NEAR: f64 = 2.0;
+    const NEAR: f64 = 1.75;
     let resolution = RESOLUTION_S * per_second;
     let (start, end) = (first.first()?, first.last()?);
     let mean = (end - start) / (first.len() - 1) as f64;

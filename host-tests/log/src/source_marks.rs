@@ -296,7 +296,7 @@ mod tests {
         }
         // Rows of almost the same time change places.
         let changing =
-            |row: usize| usize::from(row % 2 == 0) ^ usize::from(row / 2 * 7919 % 13 < 5);
+            |row: usize| usize::from(row.is_multiple_of(2)) ^ usize::from(row / 2 * 7919 % 13 < 5);
         assert!(are_sensors(changing, [one, (8.0, 1.0)]));
     }
 

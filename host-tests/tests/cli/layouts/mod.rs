@@ -70,16 +70,16 @@ fn assert_promises(tally: &Tally) {
         counts.map(|(_, (_, count))| count).sum()
     };
     let all = count(&|_, _| true);
-    // What is left are stamps of whole milliseconds near 1000 Hz, sensors without a mark that take turns irregularly, and sensors
-    // one behind the other whose counter wraps. The aim is none.
+    // What is left are mostly sensors without a mark whose rows share a stamp and differ in noise alone, as two rows of a burst do. The
+    // aim is none.
     let silent = count(&|_, outcome| *outcome == Outcome::SilentlyWrong);
     assert!(
-        100 * silent <= 2 * all,
+        100 * silent <= all,
         "{silent} of {all} are wrong in silence"
     );
     let refused = count(&|_, outcome| *outcome == Outcome::Refused);
     assert!(
-        100 * refused <= 3 * all,
+        100 * refused <= 2 * all,
         "{refused} of {all} are refused for good"
     );
     let wrong = count(&|_, outcome| *outcome == Outcome::WrongAfterAnswer);
@@ -92,7 +92,7 @@ fn assert_promises(tally: &Tally) {
     let told = count(&|key, _| is_told(key));
     let right = count(&|key, outcome| is_told(key) && *outcome == Outcome::Right);
     assert!(
-        100 * right >= 85 * told,
+        100 * right >= 90 * told,
         "{right} of {told} are right at once"
     );
 }

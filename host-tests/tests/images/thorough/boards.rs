@@ -18,7 +18,7 @@ const BARS: [Bars; 2] = [
         name: "nrf52840",
         ram_end: 0x2004_0000,
         flash: 0..0xF_0000,
-        flash_bytes: 150 << 10,
+        flash_bytes: 172 << 10,
         ram_bytes: 32 << 10,
     },
     // Statics and stack share 6 KiB. The largest stack has 3404 bytes: the frames of the image, added up along its calls.

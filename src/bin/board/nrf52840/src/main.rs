@@ -40,15 +40,18 @@ async fn main(_spawner: Spawner) {
         }
     };
     store.restore(gyro).await;
-    if let Err(error) = record::record(&mut board.device, &mut board.signal, &mut store, gyro).await
-    {
-        return error!(
-            "the record would be drawn with a wrong rate, check the sensor: {}",
-            error
-        );
-    }
+    let recorded = record::record(&mut board.device, &mut board.signal, &mut store, gyro).await;
+    let rate_hz = match recorded {
+        Ok(rate_hz) => rate_hz,
+        Err(error) => {
+            return error!(
+                "the record would be drawn with a wrong rate, check the sensor: {}",
+                error
+            );
+        }
+    };
     store.save(gyro).await;
-    match result::certify(gyro) {
+    match result::certify(gyro, rate_hz) {
         Ok(certificate) => store.certify(&certificate).await,
         Err(failure) => error!("there is no result: {}", failure),
     }

@@ -2,7 +2,7 @@
 
 use crate::{Gyro, board::Device, store::Store};
 use allanite::{
-    Error,
+    Error, Real,
     sensor::{Configuration, Description, FifoImu, SpiBus, icm_42688_p},
     storage::SnapshotInterval,
 };
@@ -34,7 +34,8 @@ const SILENCE: Duration = Duration::from_secs(5);
 /// The bytes of a full FIFO.
 const FULL: usize = 128 * 16;
 
-/// Records until the record is complete.
+/// Records until the record is complete. Returns the sensor's rate in samples per second by the clock of the board, or by its data sheet
+/// if this was not measured: the oscillators of cheap sensors are off by some per cent.
 ///
 /// # Errors
 /// [`Error::RateContradicted`] if the sensor's rate is not the one that the curve would be drawn with.
@@ -43,7 +44,8 @@ pub async fn record(
     signal: &mut Input<'static>,
     store: &mut Store,
     gyro: &mut Gyro,
-) -> Result<(), Error> {
+) -> Result<Real, Error> {
+    let mut rate_hz = SENSOR.rate_hz;
     let mut interval = SnapshotInterval::new(EVERY, gyro.samples());
     while gyro.samples() < SAMPLES {
         let bus = SpiBus::new(&mut *device);
@@ -51,6 +53,7 @@ pub async fn record(
             Ok(mut imu) => {
                 info!("{=str} records", SENSOR.name);
                 read(&mut imu, signal, store, gyro, &mut interval).await?;
+                rate_hz = imu.clock().measured_hz().unwrap_or(rate_hz);
                 // What comes after another start does not follow what came before.
                 gyro.gap();
             }
@@ -63,7 +66,7 @@ pub async fn record(
             }
         }
     }
-    Ok(())
+    Ok(rate_hz)
 }
 
 /// Reads until the record is complete or the sensor is silent.

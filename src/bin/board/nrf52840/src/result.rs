@@ -2,7 +2,7 @@
 
 use crate::{Gyro, record::SENSOR};
 use allanite::{
-    Error, Model, Scale,
+    Error, Model, Real, Scale,
     fit::{Fit, Options, State, fit},
     storage::{self, AxisCertificate, Certificate, Conditions, RateUnit},
 };
@@ -29,17 +29,17 @@ impl From<storage::Error> for Failure {
     }
 }
 
-/// Fits the five terms of IEEE Std 952 to every axis, and logs and certifies them.
+/// Fits the five terms of IEEE Std 952 to every axis of a record with so many samples per second, and logs and certifies them.
 ///
 /// # Errors
 /// [`Failure`].
-pub fn certify(gyro: &mut Gyro) -> Result<Certificate, Failure> {
-    let scale = Scale::new(SENSOR.scale_dps, SENSOR.rate_hz)?;
+pub fn certify(gyro: &mut Gyro, rate_hz: Real) -> Result<Certificate, Failure> {
+    let scale = Scale::new(SENSOR.scale_dps, rate_hz)?;
     let [x, ..] = gyro.accumulators();
     let conditions = Conditions {
         temperature_c: None,
-        duration_s: x.samples() as f64 / f64::from(SENSOR.rate_hz),
-        rate_hz: SENSOR.rate_hz.into(),
+        duration_s: x.samples() as f64 / f64::from(rate_hz),
+        rate_hz: rate_hz.into(),
         samples: x.samples(),
         gaps: x.gaps(),
     };

@@ -44,6 +44,11 @@ pub const fn ticks(us: u32) -> u32 {
     us * TICKS_PER_US
 }
 
+/// The rate in Hz of what comes after so many ticks each time.
+pub fn rate_hz(ticks: u32) -> f32 {
+    (1_000_000 * TICKS_PER_US) as f32 / ticks as f32
+}
+
 impl DelayNs for Clock {
     fn delay_ns(&mut self, ns: u32) {
         self.delay_us(ns.div_ceil(1000));

@@ -12,12 +12,12 @@ use allanite::{
 /// and rate ramp. Write those of your product here. An infinite limit asks for nothing.
 const LIMITS: [f32; ieee_952::TERMS] = [f32::INFINITY, 0.0054, 0.005, f32::INFINITY, f32::INFINITY];
 
-/// Holds a record to the limits.
+/// Holds a record with so many samples per second to the limits.
 // The curve stays where it is while the fit reads it: each function hands a result on by reference, which saves half a
 // kilobyte of stack.
 #[inline(never)]
-pub fn judge(gyro: &Accumulator<OCTAVES>, screen: &Screen) -> Verdict {
-    let Some(scale) = Scale::new(LSM6DSO.scale_dps, LSM6DSO.rate_hz).ok() else {
+pub fn judge(gyro: &Accumulator<OCTAVES>, screen: &Screen, rate_hz: f32) -> Verdict {
+    let Some(scale) = Scale::new(LSM6DSO.scale_dps, rate_hz).ok() else {
         return Verdict::NoFit;
     };
     match &curve(gyro, scale) {

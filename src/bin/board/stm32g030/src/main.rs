@@ -14,7 +14,7 @@ use allanite::{
     sensor::{Imu, LSM6DSO},
 };
 use board::{Board, Bus, Display};
-use clock::{Clock, ticks};
+use clock::{Clock, rate_hz, ticks};
 use embassy_stm32::gpio::Input;
 use embedded_hal::delay::DelayNs as _;
 use panic_halt as _;
@@ -34,6 +34,9 @@ const LAST: u64 = 1 << 19;
 
 /// The ticks of the clock from one sample to the next.
 const INTERVAL: u32 = ticks(1_000_000 / 104);
+
+/// The ticks that are counted as one, so that all of a record fit into 32 bits, and that the rate is right to a thousandth.
+const FRACTION: u32 = 32;
 
 /// The time in µs from the supply to the first access to the sensor.
 const SUPPLY_US: u32 = 100_000;
@@ -94,10 +97,11 @@ fn station(
     let mut samples = FIRST;
     let mut screen = Screen::new();
     loop {
-        if let Err(verdict) = record(imu, ready, clock, (gyro, &mut screen), samples) {
-            return verdict;
-        }
-        let verdict = judge::judge(gyro, &screen);
+        let rate_hz = match record(imu, ready, clock, (gyro, &mut screen), samples) {
+            Ok(rate_hz) => rate_hz,
+            Err(verdict) => return verdict,
+        };
+        let verdict = judge::judge(gyro, &screen, rate_hz);
         if samples >= LAST || !matches!(verdict, Verdict::Undecided(_)) {
             return verdict;
         }
@@ -113,7 +117,7 @@ fn start<'b>(bus: &'b mut Bus, clock: &mut Clock) -> Option<Imu<&'b mut Bus>> {
     Imu::start(bus, &LSM6DSO, clock).ok()
 }
 
-/// Records until there are so many samples.
+/// Records until there are so many samples, and returns the sensor's rate in samples per second of the board's clock.
 #[inline(never)]
 fn record(
     imu: &mut Imu<&mut Bus>,
@@ -121,11 +125,11 @@ fn record(
     clock: &mut Clock,
     (gyro, screen): (&mut Accumulator<OCTAVES>, &mut Screen),
     until: u64,
-) -> Result<(), Verdict> {
+) -> Result<f32, Verdict> {
     // Samples were lost while the record was judged.
     gyro.gap();
     screen.gap();
-    let (mut elapsed, mut expected) = (0, 0);
+    let (mut elapsed, mut intervals) = (0_u32, 0_u32);
     clock.restart();
     while gyro.samples() < until {
         if clock.ticks() > 8 * INTERVAL {
@@ -142,17 +146,19 @@ fn record(
         if since > INTERVAL + INTERVAL / 2 {
             gyro.gap();
             screen.gap();
+        } else {
+            elapsed += since / FRACTION;
+            intervals += 1;
         }
         gyro.push(reading.gyro[AXIS]);
         screen.push(reading.gyro[AXIS]);
-        elapsed += u64::from(since);
-        expected += u64::from(INTERVAL);
     }
-    // Another rate would shift the curve along τ. The sensor's oscillator may be off by some per cent.
-    if elapsed.abs_diff(expected) * 20 > expected {
+    // Another rate than the true one would shift the curve along τ. The sensor's oscillator may be off by some per cent.
+    let rate_hz = rate_hz(FRACTION) * intervals as f32 / elapsed as f32;
+    if !(0.95 * LSM6DSO.rate_hz..1.05 * LSM6DSO.rate_hz).contains(&rate_hz) {
         return Err(Verdict::WrongRate);
     }
-    Ok(())
+    Ok(rate_hz)
 }
 
 /// Shows the verdict. Both pins stay low if there is none.

@@ -44,8 +44,10 @@ pub fn open(path: &Path) -> Result<(RegularFile, u64), Failure> {
             Place::file(path).failure("is not a regular file", "save its content as a file first")
         );
     }
-    let length = held().get(path).map_or(metadata.len(), |held| held.0);
     let file = File::open(path).map_err(fail)?;
+    // The length is that of the file that was opened: another one may have taken its place meanwhile, as a curve that is saved again.
+    let metadata = file.metadata().map_err(fail)?;
+    let length = held().get(path).map_or(metadata.len(), |held| held.0);
     let at = 0;
     Ok((RegularFile { file, at, length }, length))
 }

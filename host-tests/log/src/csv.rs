@@ -180,8 +180,7 @@ impl Csv {
         let rows = self.first_records()?;
         let column = |column: usize| rows.iter().map(|row| number(row, column)).collect();
         let numbers: Vec<Vec<Option<f64>>> = (0..self.columns.looks.len()).map(column).collect();
-        let turns =
-            source_marks::turns(&numbers).or_else(|| source_marks::turns_of_noise(&numbers));
+        let turns = source_marks::turns(&numbers);
         let Some(turns) = turns.or_else(|| source_marks::turns_of_decimals(&rows)) else {
             return Ok(());
         };

@@ -110,33 +110,6 @@ fn turn(values: &[Option<f64>], turns: usize) -> f64 {
     squares.fold(0.0, f64::max)
 }
 
-/// The square of the logarithm of the ratio of noises, in standard deviations, beyond which rows that share a stamp are those of several
-/// sensors, in at least two columns. Chosen by hand.
-const TURNS_OF_NOISE: f64 = 64.0;
-
-/// The number of sensors whose rows share each stamp, 2 or 3, where their noises tell them apart. Rows of a burst that share a stamp have
-/// one noise. A line at a quarter of the rate may seem like two noises, but the rows of a line have stamps of their own.
-pub(super) fn turns_of_noise(numbers: &[Vec<Option<f64>>]) -> Option<usize> {
-    let (times, others): (Vec<_>, Vec<_>) = numbers.iter().partition(|values| is_time(values));
-    [2, 3].into_iter().find(|&turns| {
-        let share = |values: &&Vec<Option<f64>>| {
-            let pairs = values.windows(2).filter(|pair| pair[0] == pair[1]).count();
-            pairs as f64 / values.len() as f64
-        };
-        let expected = 1.0 - 1.0 / turns as f64;
-        let are_shared = times
-            .iter()
-            .any(|values| (share(values) - expected).abs() < 0.05);
-        let differs = |values: &&&Vec<Option<f64>>| {
-            let places: Vec<u64> = (0..values.len()).map(|row| (row % turns) as u64).collect();
-            let pairs = (1..turns as u64).flat_map(|other| (0..other).map(move |one| [one, other]));
-            let mut squares = pairs.filter_map(|pair| difference_of_noises(&places, values, pair));
-            squares.any(|square| square > TURNS_OF_NOISE)
-        };
-        are_shared && others.iter().filter(differs).count() >= 2
-    })
-}
-
 /// The fewest rows whose decimals are compared.
 const DECIMALS: usize = 32;
 
@@ -349,29 +322,6 @@ mod tests {
         };
         let columns = [time, angle(0.1), angle(-0.2)];
         assert_eq!(super::turns(&columns), None);
-    }
-
-    #[test]
-    fn rows_of_one_stamp_whose_noises_take_turns_are_those_of_sensors() {
-        let mut state = 11;
-        for (turns, scatter) in [(2, 2.0), (3, 3.0)] {
-            let mut rows = |times: usize, scatter: f64| -> Vec<Vec<Option<f64>>> {
-                let time = (0..900).map(|row| Some((row / times) as f64)).collect();
-                let mut column = |_| -> Vec<Option<f64>> {
-                    let mut value = |row: usize| match row % turns {
-                        1 => scatter * noise(&mut state),
-                        _ => noise(&mut state),
-                    };
-                    (0..900).map(|row| Some(value(row))).collect()
-                };
-                let [x, y, z] = [0, 1, 2].map(&mut column);
-                vec![time, x, y, z]
-            };
-            assert_eq!(turns_of_noise(&rows(turns, scatter)), Some(turns));
-            // A burst of one sensor, and rows with stamps of their own.
-            assert_eq!(turns_of_noise(&rows(turns, 1.0)), None);
-            assert_eq!(turns_of_noise(&rows(1, scatter)), None);
-        }
     }
 
     #[test]

@@ -214,9 +214,10 @@ pub fn certified(verdict: Option<Verdict>, found: &str) -> String {
     match verdict {
         None => "not diagnosed".into(),
         Some(Verdict::Adequate) => ADEQUATE.into(),
-        Some(Verdict::Improved) if found.is_empty() => "improved".into(),
+        Some(verdict @ (Verdict::Improved | Verdict::Incomplete)) if found.is_empty() => {
+            verdict.name().into()
+        }
         Some(Verdict::Improved) => format!("with {found}"),
-        Some(Verdict::Incomplete) if found.is_empty() => "incomplete".into(),
         Some(Verdict::Incomplete) => format!("with {found}, part unexplained"),
         Some(Verdict::Unexplained) => "unexplained".into(),
         Some(Verdict::TooShort) => "too short to judge".into(),

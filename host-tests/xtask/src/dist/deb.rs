@@ -1,9 +1,15 @@
 //! The package for Debian and what follows it.
 
-use super::files::{Packed, gzip, hexadecimal, tar};
-use anyhow::{Result, bail};
-use md5::{Digest as _, Md5};
-use std::time::{Duration, UNIX_EPOCH};
+use super::{
+    crates::answer,
+    files::{self, Packed},
+};
+use anyhow::{Context as _, Result, bail};
+use std::{
+    fs,
+    process::Command,
+    time::{Duration, UNIX_EPOCH},
+};
 
 /// What the package says of itself.
 pub(super) struct About<'a> {
@@ -87,56 +93,55 @@ pub(super) fn package(files: &[Packed], copyright: &str, about: &About) -> Resul
     let mut installed = vec![
         Packed::new(format!("{documents}/copyright"), copyright),
         Packed::new("share/lintian/overrides/allanite", OVERRIDES),
-        Packed::new(
-            format!("{documents}/changelog.Debian.gz"),
-            gzip(about.changes().as_bytes())?,
-        ),
+        Packed::new(format!("{documents}/changelog.Debian"), about.changes()),
     ];
     for file in files {
-        let path = &file.path;
-        installed.push(
-            if path.starts_with("share/man/") || path.ends_with("/licences-of-crates") {
-                Packed::new(format!("{path}.gz"), gzip(&file.bytes)?)
-            } else if path.ends_with("/CHANGELOG.md") {
-                Packed::new(format!("{documents}/changelog.gz"), gzip(&file.bytes)?)
-            } else if let Some(name) = path.strip_prefix("share/zsh/site-functions/") {
-                Packed::new(format!("share/zsh/vendor-completions/{name}"), &*file.bytes)
-            } else if path.starts_with(&format!("{documents}/LICENSE-")) {
-                // They are in `copyright`.
-                continue;
-            } else {
-                file.clone()
-            },
-        );
+        let mut file = file.clone();
+        if file.path.ends_with("/CHANGELOG.md") {
+            file.path = format!("{documents}/changelog");
+        } else if let Some(name) = file.path.strip_prefix("share/zsh/site-functions/") {
+            file.path = format!("share/zsh/vendor-completions/{name}");
+        } else if file.path.starts_with(&format!("{documents}/LICENSE-")) {
+            // They are in `copyright`.
+            continue;
+        }
+        installed.push(file);
     }
-    installed.sort();
-    let kib = |file: &Packed| (file.bytes.len() as u64).div_ceil(1024);
-    let control = about.control(installed.iter().map(kib).sum())?;
-    let sum = |file: &Packed| {
-        let sum = hexadecimal(&Md5::digest(&file.bytes));
-        format!("{sum}  usr/{}\n", file.path)
+    let to_pack = |path: &&Packed| {
+        let ends = ["/changelog", "/changelog.Debian", "/licences-of-crates"];
+        path.path.starts_with("share/man/") || ends.iter().any(|end| path.path.ends_with(end))
     };
-    let sums: String = installed.iter().map(sum).collect();
+    let packed: Vec<String> = (installed.iter().filter(to_pack))
+        .map(|file| file.path.clone())
+        .collect();
+    let folder = tempfile::tempdir()?;
+    let root = folder.path().join("root");
+    files::write(&root.join("usr"), &installed)?;
+    files::gzip(&root.join("usr"), &packed)?;
+
+    let mut paths: Vec<String> = (installed.iter())
+        .map(|file| match packed.contains(&file.path) {
+            true => format!("usr/{}.gz", file.path),
+            false => format!("usr/{}", file.path),
+        })
+        .collect();
+    paths.sort();
+    let mut sums = Command::new("md5sum");
+    let sums = answer(sums.args(&paths).current_dir(&root))?;
+    let kib = |path: &String| Ok(fs::metadata(root.join(path))?.len().div_ceil(1024));
+    let sizes: Vec<u64> = paths.iter().map(kib).collect::<Result<_>>()?;
     let control = [
-        Packed::new("control", control),
+        Packed::new("control", about.control(sizes.iter().sum())?),
         Packed::new("md5sums", sums),
     ];
-    let parts = [
-        ("debian-binary", b"2.0\n".to_vec()),
-        ("control.tar.gz", gzip(&tar(&control, ".", about.epoch)?)?),
-        (
-            "data.tar.gz",
-            gzip(&tar(&installed, "./usr", about.epoch)?)?,
-        ),
-    ];
-    let mut archive = ar::Builder::new(Vec::new());
-    for (name, bytes) in parts {
-        let mut header = ar::Header::new(name.into(), bytes.len() as u64);
-        header.set_mode(0o100_644);
-        header.set_mtime(about.epoch);
-        archive.append(&header, &*bytes)?;
-    }
-    Ok(archive.into_inner()?)
+    files::write(&root.join("DEBIAN"), &control)?;
+    let mut build = Command::new("dpkg-deb");
+    build
+        .args(["--build", "--root-owner-group", "-Zgzip", "root", "package"])
+        .current_dir(folder.path())
+        .env("SOURCE_DATE_EPOCH", about.epoch.to_string());
+    answer(&mut build).context("the package for Debian needs its `dpkg-deb`: install dpkg")?;
+    Ok(fs::read(folder.path().join("package"))?)
 }
 
 /// The licences of the program, in the form that Debian reads.
@@ -183,7 +188,6 @@ pub(super) fn copyright(mit: &str, c_library: Option<(&str, &str)>) -> Result<St
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::io::Read as _;
 
     const ABOUT: About = About {
         version: "0.1.0",
@@ -191,41 +195,6 @@ mod tests {
         maintainer: "Somebody <somebody@example.org>",
         epoch: 86_400,
     };
-
-    fn parts(package: &[u8]) -> Vec<(String, Vec<u8>)> {
-        let mut archive = ar::Archive::new(package);
-        let mut parts = Vec::new();
-        while let Some(entry) = archive.next_entry() {
-            let mut entry = entry.unwrap();
-            let name = String::from_utf8(entry.header().identifier().to_vec()).unwrap();
-            assert_eq!(entry.header().mtime(), ABOUT.epoch);
-            let mut bytes = Vec::new();
-            entry.read_to_end(&mut bytes).unwrap();
-            parts.push((name, bytes));
-        }
-        parts
-    }
-
-    fn unpacked(gz: &[u8]) -> Vec<u8> {
-        let mut bytes = Vec::new();
-        flate2::read::GzDecoder::new(gz)
-            .read_to_end(&mut bytes)
-            .unwrap();
-        bytes
-    }
-
-    fn texts(archive: &[u8]) -> Vec<(String, Vec<u8>)> {
-        let mut archive = tar::Archive::new(archive);
-        let entries = archive.entries().unwrap();
-        let read = entries.map(|entry| {
-            let mut entry = entry.unwrap();
-            let mut bytes = Vec::new();
-            entry.read_to_end(&mut bytes).unwrap();
-            let path = String::from_utf8(entry.path_bytes().into_owned()).unwrap();
-            (path, bytes)
-        });
-        read.filter(|(path, _)| !path.ends_with('/')).collect()
-    }
 
     #[test]
     fn package_is_the_same_in_any_order_and_holds_what_debian_asks_for() {
@@ -245,12 +214,14 @@ mod tests {
         files.reverse();
         assert_eq!(package(&files), first);
 
-        let parts = parts(&first);
-        let names: Vec<_> = parts.iter().map(|(name, _)| name.as_str()).collect();
-        assert_eq!(names, ["debian-binary", "control.tar.gz", "data.tar.gz"]);
-        assert_eq!(parts[0].1, b"2.0\n");
-        let data = texts(&unpacked(&parts[2].1));
-        let paths: Vec<_> = data.iter().map(|(path, _)| path.as_str()).collect();
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("package.deb"), first).unwrap();
+        let mut list = Command::new("dpkg-deb");
+        list.args(["--contents", "package.deb"]).env("TZ", "UTC");
+        let contents = answer(list.current_dir(folder.path())).unwrap();
+        let paths: Vec<_> = (contents.lines().filter(|line| !line.ends_with('/')))
+            .map(|line| line.split_whitespace().last().unwrap())
+            .collect();
         assert_eq!(
             paths,
             [
@@ -264,20 +235,30 @@ mod tests {
                 "./usr/share/zsh/vendor-completions/_allanite",
             ]
         );
-        let changes = String::from_utf8(unpacked(&data[1].1)).unwrap();
+        let of_root = |line: &str| line.contains(" root/root ") && line.contains(" 1970-01-02 ");
+        assert!(contents.lines().all(of_root), "{contents}");
+        assert!(
+            contents.contains("-rwxr-xr-x root/root         7 "),
+            "{contents}"
+        );
+        let mut unpack = Command::new("dpkg-deb");
+        unpack.args(["--raw-extract", "package.deb", "raw"]);
+        answer(unpack.current_dir(folder.path())).unwrap();
+        let raw = folder.path().join("raw");
+        let mut changes = Command::new("zcat");
+        changes.arg(raw.join("usr/share/doc/allanite/changelog.Debian.gz"));
+        let changes = answer(&mut changes).unwrap();
         let signature = " -- Somebody <somebody@example.org>  Fri, 02 Jan 1970 00:00:00 +0000\n";
         assert!(changes.ends_with(signature), "{changes}");
-        let control = texts(&unpacked(&parts[1].1));
-        assert_eq!(control[0].0, "./control");
-        let fields = String::from_utf8(control[0].1.clone()).unwrap();
+        let sums = fs::read_to_string(raw.join("DEBIAN/md5sums")).unwrap();
+        // The MD5 of `program`.
+        let sum = "a9c449d4fa44e9e5a41c574ae55ce4d9  usr/bin/allanite\n";
+        assert!(sums.starts_with(sum), "{sums}");
+        let fields = fs::read_to_string(raw.join("DEBIAN/control")).unwrap();
         assert!(fields.contains("\nArchitecture: amd64\n"), "{fields}");
         let installed = 7 + copyright.len().div_ceil(1024);
         let size = format!("\nInstalled-Size: {installed}\n");
         assert!(fields.contains(&size), "{fields}");
-        let sums = String::from_utf8(control[1].1.clone()).unwrap();
-        // The MD5 of `program`.
-        let sum = "a9c449d4fa44e9e5a41c574ae55ce4d9  usr/bin/allanite\n";
-        assert!(sums.starts_with(sum), "{sums}");
         assert!(copyright.contains("\nCopyright: 2026 "), "{copyright}");
         assert!(
             copyright.contains("\nLicense: Expat\n Permission"),

@@ -1,12 +1,8 @@
-//! Files and archives that are the same bytes whoever packs them, and whenever.
+//! Files to be packed, and the system's own tools, which pack them to the same bytes whenever and by whomever they are called.
 
+use super::crates::answer;
 use anyhow::{Context as _, Result};
-use flate2::{Compression, GzBuilder};
-use std::{
-    collections::BTreeSet,
-    io::Write as _,
-    path::{Path, PathBuf},
-};
+use std::{fs, path::Path, process::Command};
 
 /// A file to be packed.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -27,64 +23,48 @@ impl Packed {
     }
 }
 
-/// The bytes as gzip, without a name and a time.
-pub(super) fn gzip(bytes: &[u8]) -> Result<Vec<u8>> {
-    let mut packer = GzBuilder::new()
-        .mtime(0)
-        .write(Vec::new(), Compression::best());
-    packer.write_all(bytes)?;
-    Ok(packer.finish()?)
-}
-
-/// The files and their folders as a tar archive below a folder: in the order of their paths, owned by root, of one time.
-pub(super) fn tar(files: &[Packed], below: &str, epoch: u64) -> Result<Vec<u8>> {
-    let mut archive = tar::Builder::new(Vec::new());
-    let mut folders = BTreeSet::new();
-    let mut sorted: Vec<_> = files.iter().collect();
-    sorted.sort();
-    for file in sorted {
-        let path = PathBuf::from(format!("{below}/{}", file.path));
-        let mut above: Vec<&Path> = path.ancestors().skip(1).collect();
-        above.retain(|folder| !folder.as_os_str().is_empty());
-        for folder in above.into_iter().rev() {
-            if folders.insert(folder.to_owned()) {
-                let name = format!("{}/", folder.display());
-                let header = header(tar::EntryType::Directory, &name, 0o755, 0, epoch)?;
-                archive.append(&header, std::io::empty())?;
-            }
+/// Writes the files below a folder. Everybody may read them, whatever this user's mask is.
+pub(super) fn write(folder: &Path, files: &[Packed]) -> Result<()> {
+    for file in files {
+        let path = folder.join(&file.path);
+        let above = path.parent().unwrap_or(folder);
+        fs::create_dir_all(above)
+            .and_then(|()| fs::write(&path, &file.bytes))
+            .with_context(|| path.display().to_string())?;
+        #[cfg(unix)]
+        if file.is_program {
+            use std::os::unix::fs::PermissionsExt as _;
+            fs::set_permissions(&path, fs::Permissions::from_mode(0o755))?;
         }
-        let mode = if file.is_program { 0o755 } else { 0o644 };
-        let size = file.bytes.len() as u64;
-        let name = path.display().to_string();
-        let header = header(tar::EntryType::Regular, &name, mode, size, epoch)?;
-        archive.append(&header, &*file.bytes)?;
     }
-    Ok(archive.into_inner()?)
+    let mut readable = Command::new("chmod");
+    readable.args(["--recursive", "u=rwX,go=rX"]).arg(folder);
+    answer(&mut readable)?;
+    Ok(())
 }
 
-fn header(
-    kind: tar::EntryType,
-    name: &str,
-    mode: u32,
-    size: u64,
-    epoch: u64,
-) -> Result<tar::Header> {
-    let mut header = tar::Header::new_gnu();
-    // The crate would leave out the `./` that Debian's names begin with.
-    let place = header.as_old_mut().name.get_mut(..name.len());
-    place
-        .with_context(|| format!("the name {name} is too long for an archive"))?
-        .copy_from_slice(name.as_bytes());
-    header.set_entry_type(kind);
-    header.set_mode(mode);
-    header.set_size(size);
-    header.set_mtime(epoch);
-    header.set_uid(0);
-    header.set_gid(0);
-    header.set_username("root")?;
-    header.set_groupname("root")?;
-    header.set_cksum();
-    Ok(header)
+/// Packs files below a folder as gzip, each for itself, without a name and a time in it.
+pub(super) fn gzip(folder: &Path, paths: &[String]) -> Result<()> {
+    let mut pack = Command::new("gzip");
+    pack.args(["--best", "--no-name"]).args(paths);
+    answer(pack.current_dir(folder))?;
+    Ok(())
+}
+
+/// The files below a folder of this name as a tar archive in gzip: in the order of their paths, owned by root, of one time.
+pub(super) fn archive(files: &[Packed], name: &str, epoch: u64) -> Result<Vec<u8>> {
+    let folder = tempfile::tempdir()?;
+    write(&folder.path().join(name), files)?;
+    let mut pack = Command::new("tar");
+    pack.args(["--create", "--format=gnu", "--sort=name", "--owner=root:0"])
+        .args([
+            "--group=root:0",
+            "--use-compress-program=gzip --best --no-name",
+        ])
+        .arg(format!("--mtime=@{epoch}"))
+        .args(["--file=packed", name]);
+    answer(pack.current_dir(folder.path()))?;
+    Ok(fs::read(folder.path().join("packed"))?)
 }
 
 /// The digits of a hash.
@@ -97,46 +77,37 @@ mod tests {
     use super::*;
 
     #[test]
-    fn archives_do_not_depend_on_the_order_and_have_every_folder() {
+    fn archive_does_not_depend_on_the_order_and_has_every_folder() {
         let mut files = vec![
             Packed::new("share/b", "second"),
             Packed::new("bin/a", "first"),
             Packed::new("share/doc/c", vec![7; 3000]),
         ];
         files[1].is_program = true;
-        let archive = tar(&files, "./usr", 86_400).unwrap();
+        let packed = archive(&files, "all", 86_400).unwrap();
         files.reverse();
-        assert_eq!(tar(&files, "./usr", 86_400).unwrap(), archive);
-        assert_ne!(tar(&files, "./usr", 86_401).unwrap(), archive);
-        let mut read = tar::Archive::new(&*archive);
-        let entries: Vec<_> = read
-            .entries()
-            .unwrap()
-            .map(|entry| {
-                let entry = entry.unwrap();
-                let header = entry.header();
-                assert_eq!(header.mtime().unwrap(), 86_400);
-                assert_eq!(header.uid().unwrap(), 0);
-                let path = entry.path_bytes();
-                let path = String::from_utf8(path.into_owned()).unwrap();
-                format!("{path} {:o} {}", header.mode().unwrap(), entry.size())
-            })
+        assert_eq!(archive(&files, "all", 86_400).unwrap(), packed);
+        assert_ne!(archive(&files, "all", 86_401).unwrap(), packed);
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("packed.tar.gz");
+        fs::write(&file, packed).unwrap();
+        let mut list = Command::new("tar");
+        list.args(["--list", "--verbose", "--numeric-owner", "--utc", "--file"]);
+        let list = answer(list.arg(file)).unwrap();
+        let lines: Vec<Vec<&str>> = list
+            .lines()
+            .map(|it| it.split_whitespace().collect())
             .collect();
-        assert_eq!(
-            entries,
-            [
-                "./ 755 0",
-                "./usr/ 755 0",
-                "./usr/bin/ 755 0",
-                "./usr/bin/a 755 5",
-                "./usr/share/ 755 0",
-                "./usr/share/b 644 6",
-                "./usr/share/doc/ 755 0",
-                "./usr/share/doc/c 644 3000",
-            ]
-        );
-        let packed = gzip(&archive).unwrap();
-        assert_eq!(packed[3..8], [0; 5], "a name or a time");
-        assert!(packed.len() < archive.len() / 4);
+        let expected = [
+            "drwxr-xr-x 0/0 0 1970-01-02 00:00 all/",
+            "drwxr-xr-x 0/0 0 1970-01-02 00:00 all/bin/",
+            "-rwxr-xr-x 0/0 5 1970-01-02 00:00 all/bin/a",
+            "drwxr-xr-x 0/0 0 1970-01-02 00:00 all/share/",
+            "-rw-r--r-- 0/0 6 1970-01-02 00:00 all/share/b",
+            "drwxr-xr-x 0/0 0 1970-01-02 00:00 all/share/doc/",
+            "-rw-r--r-- 0/0 3000 1970-01-02 00:00 all/share/doc/c",
+        ];
+        let lines: Vec<String> = lines.iter().map(|line| line.join(" ")).collect();
+        assert_eq!(lines, expected);
     }
 }

@@ -15,7 +15,7 @@ use crate::{
 };
 use anyhow::{Context as _, Result, bail, ensure};
 use crates::{Program, answer};
-use files::{Packed, gzip, hexadecimal, tar};
+use files::{Packed, archive, hexadecimal};
 use sha2::{Digest as _, Sha256};
 use std::{
     fs,
@@ -176,7 +176,7 @@ impl Build {
         let package = deb::package(&files, &copyright, &about)?;
         files.push(Packed::new(format!("{documents}/copyright"), copyright));
         let name = format!("allanite-{VERSION}-{architecture}-linux");
-        let archive = gzip(&tar(&files, &name, self.epoch)?)?;
+        let archive = archive(&files, &name, self.epoch)?;
         // What is in the packages, for whoever installs single files.
         let mut all = Vec::new();
         for mut file in files {
@@ -261,20 +261,7 @@ fn write(output: &Path, files: &[Packed]) -> Result<()> {
     } else if output.is_dir() && output.read_dir()?.next().is_some() {
         bail!("{} is not empty: name another folder", output.display());
     }
-    for file in files {
-        let path = output.join(&file.path);
-        let written = path
-            .parent()
-            .map_or(Ok(()), fs::create_dir_all)
-            .and_then(|()| fs::write(&path, &file.bytes));
-        written.with_context(|| path.display().to_string())?;
-        #[cfg(unix)]
-        if file.is_program {
-            use std::os::unix::fs::PermissionsExt as _;
-            fs::set_permissions(&path, fs::Permissions::from_mode(0o755))?;
-        }
-    }
-    Ok(())
+    files::write(output, files)
 }
 
 /// The time of everything that is packed: `SOURCE_DATE_EPOCH`, or that of the last commit.

@@ -122,7 +122,7 @@ impl Program {
         // SAFETY: all pointers lead to memory of this program, or are null.
         unsafe {
             match choice % 24 {
-                0 => allanite_gyro_init(gyro, bytes.size::<AllaniteGyro>()),
+                0 => allanite_gyro_init(gyro, bytes.size::<AllaniteGyro>(), 100.0),
                 1..=4 => push(gyro, bytes),
                 5 => allanite_gyro_gap(gyro),
                 6 => allanite_gyro_lost(gyro, u64::from(bytes.word()) << (choice % 33)),
@@ -207,6 +207,8 @@ impl Program {
                     allanite_diagnosis_advance_with(diagnosis, progress, Some(pause), context);
                     let mut fit: Box<AllaniteFit> = zeroed();
                     allanite_diagnosis_fit(diagnosis, &raw mut *fit);
+                    let mut dependence: Box<AllaniteDependence> = zeroed();
+                    allanite_diagnosis_dependence(diagnosis, &raw mut *dependence);
                     allanite_certificate_add(certificate, diagnosis)
                 }
                 _ => certify(certificate, bytes),

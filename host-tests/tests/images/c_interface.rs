@@ -44,7 +44,7 @@ const MAIN: &str = r#"#include "allanite.h"
 #include <stdio.h>
 static AllaniteGyro gyro;
 int main(void) {
-    AllaniteStatus made = allanite_gyro_init(&gyro, sizeof gyro);
+    AllaniteStatus made = allanite_gyro_init(&gyro, sizeof gyro, 100.0f);
     printf("%d %d\n", ALLANITE_OCTAVES, (int)made);
     return 0;
 }
@@ -151,4 +151,31 @@ fn hostile_calls_are_refused_and_harm_nothing() {
     let said = host_program(&["hostile.c", "host.c"], folder.path());
     let said = said.unwrap_or_else(|error| panic!("{error:#}"));
     assert_eq!(said, ["refused as they should be"]);
+}
+
+/// The rate of the product's first axis follows the temperature by half a count of 1/131 deg/s for each 0.01 K, 20 s late.
+#[test]
+fn a_temperature_that_a_rate_follows_late_leaves_no_random_walk() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let said = host_program(&["product.c", "host.c"], folder.path());
+    let said = said.unwrap_or_else(|error| panic!("{error:#}"));
+    let follows = said
+        .iter()
+        .find_map(|line| line.strip_prefix("follows the temperature "));
+    let bits = follows.expect("a line").split_whitespace();
+    let values: Vec<f32> = bits
+        .map(|bits| f32::from_bits(u32::from_str_radix(bits, 16).expect("hexadecimal digits")))
+        .collect();
+    let [slope, slope_error, lag_s, _] = values[..] else {
+        panic!("{said:?}");
+    };
+    let exact = 0.5 / 131.0 / 0.01;
+    assert!(
+        (slope - exact).abs() < 2.0 * slope_error && slope_error < 0.06 * exact,
+        "{values:?}"
+    );
+    assert!((8.0..42.0).contains(&lag_s), "{values:?}");
+    let walks = said.iter().filter(|line| line.contains("rate_random_walk"));
+    let last = walks.last().expect("a walk");
+    assert!(!last.contains("state 0"), "{said:?}");
 }

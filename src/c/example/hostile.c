@@ -57,11 +57,11 @@ static void without_values(void) {
     AllaniteTestStatus status;
     AllaniteProgress progress;
     AllaniteFit fit;
-    EXPECT(NULL_POINTER, allanite_gyro_init(NULL, sizeof gyro));
-    EXPECT(WRONG_SIZE, allanite_gyro_init(&gyro, sizeof gyro - 8));
-    EXPECT(WRONG_SIZE, allanite_gyro_init(&gyro, 0));
-    EXPECT(WRONG_SIZE, allanite_gyro_init(&gyro, SIZE_MAX));
-    EXPECT(MISALIGNED, allanite_gyro_init((AllaniteGyro *)((char *)&gyro + 4), sizeof gyro));
+    EXPECT(NULL_POINTER, allanite_gyro_init(NULL, sizeof gyro, 100.0f));
+    EXPECT(WRONG_SIZE, allanite_gyro_init(&gyro, sizeof gyro - 8, 100.0f));
+    EXPECT(WRONG_SIZE, allanite_gyro_init(&gyro, 0, 100.0f));
+    EXPECT(WRONG_SIZE, allanite_gyro_init(&gyro, SIZE_MAX, 100.0f));
+    EXPECT(MISALIGNED, allanite_gyro_init((AllaniteGyro *)((char *)&gyro + 4), sizeof gyro, 100.0f));
     EXPECT(NOT_INITIALISED, allanite_gyro_push(&gyro, counts, 0));
     EXPECT(NOT_INITIALISED, allanite_gyro_gap(&gyro));
     EXPECT(NOT_INITIALISED, allanite_gyro_lost(&gyro, 1));
@@ -84,6 +84,8 @@ static void without_values(void) {
     EXPECT(NOT_INITIALISED, allanite_diagnosis_advance(&diagnosis, &progress));
     EXPECT(NOT_INITIALISED, allanite_diagnosis_advance_with(&diagnosis, &progress, end, NULL));
     EXPECT(NOT_INITIALISED, allanite_diagnosis_fit(&diagnosis, &fit));
+    AllaniteDependence dependence;
+    EXPECT(NOT_INITIALISED, allanite_diagnosis_dependence(&diagnosis, &dependence));
     EXPECT(NOT_INITIALISED, allanite_certificate_add(&certificate, &diagnosis));
     EXPECT(NOT_INITIALISED, allanite_certificate_encode(&certificate, bytes, sizeof bytes, &length));
     EXPECT(NULL_POINTER, allanite_gyro_push(NULL, counts, 0));
@@ -101,19 +103,20 @@ static void with_values(void) {
     AllaniteFit fit;
     AllaniteProgress progress;
     AllaniteTestStatus status;
-    EXPECT(OK, allanite_gyro_init(&gyro, sizeof gyro));
-    EXPECT(OK, allanite_gyro_init(&other, sizeof other));
+    EXPECT(OK, allanite_gyro_init(&gyro, sizeof gyro, 100.0f));
+    EXPECT(OK, allanite_gyro_init(&other, sizeof other, 100.0f));
     EXPECT(NULL_POINTER, allanite_gyro_push(&gyro, NULL, 0));
     EXPECT(MISALIGNED, allanite_gyro_push(&gyro, (const int32_t *)((const char *)counts + 1), 0));
     EXPECT(OK, allanite_gyro_advance(&gyro, NULL));
     EXPECT(OK, allanite_gyro_samples(&gyro, NULL, NULL));
     EXPECT(OK, allanite_gyro_lost(&gyro, UINT64_MAX));
-    EXPECT(OK, allanite_gyro_init(&gyro, sizeof gyro));
+    EXPECT(OK, allanite_gyro_init(&gyro, sizeof gyro, 100.0f));
     EXPECT(UNKNOWN_AXIS, take(3, 1.0f, 100.0f, 1.0f));
     EXPECT(NOT_INITIALISED, allanite_fit(&record, &fit));
     EXPECT(UNKNOWN_AXIS, take(SIZE_MAX, 1.0f, 100.0f, 1.0f));
     const float bad[] = {0.0f, -1.0f, NAN, INFINITY};
     for (int i = 0; i < 4; i++) {
+        EXPECT(INVALID_ARGUMENT, allanite_gyro_init(&gyro, sizeof gyro, bad[i]));
         EXPECT(INVALID_ARGUMENT, take(0, bad[i], 100.0f, 1.0f));
         EXPECT(INVALID_ARGUMENT, take(0, 1.0f, bad[i], 1.0f));
         EXPECT(INVALID_ARGUMENT, take(0, 1.0f, 100.0f, bad[i]));
@@ -210,7 +213,7 @@ static void with_rubbish(void) {
 /* A record of noise of this size. */
 static void noise(AllaniteGyro *of, int32_t size) {
     uint32_t seed = (uint32_t)size;
-    EXPECT(OK, allanite_gyro_init(of, sizeof *of));
+    EXPECT(OK, allanite_gyro_init(of, sizeof *of, 100.0f));
     for (int i = 0; i < 10000; i++) {
         int32_t sample[3];
         for (int axis = 0; axis < 3; axis++) {

@@ -31,7 +31,7 @@ static void check(AllaniteStatus status) {
 }
 
 void product(void) {
-    check(allanite_gyro_init(&gyro, sizeof gyro));
+    check(allanite_gyro_init(&gyro, sizeof gyro, 100.0f));
     size_t bytes;
     do {
         bytes = take(counts, sizeof counts);

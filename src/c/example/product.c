@@ -19,9 +19,9 @@ static AllaniteCertificate certificate;
 static uint8_t stored[ALLANITE_SNAPSHOT_BYTES];
 static uint8_t bytes[ALLANITE_CERTIFICATE_BYTES];
 
-/* The sensor: white noise, an oscillation, and a temperature that the first axis follows. */
+/* The sensor: white noise, an oscillation, and a temperature that rises and falls, which the first axis follows with a lag of 20 s. */
 static uint32_t seed;
-static int32_t sine, cosine;
+static int32_t sine, cosine, inside;
 
 static int32_t noise(void) {
     int32_t sum = 0;
@@ -35,8 +35,9 @@ static int32_t noise(void) {
 static void sample(uint32_t n, int32_t counts[3], int32_t *temperature) {
     sine -= cosine * 3 / 4;
     cosine += sine * 3 / 4;
-    *temperature = 2500 + (int32_t)(n / 256);
-    counts[0] = noise() + sine / 64 + *temperature / 8;
+    *temperature = 2500 + (int32_t)((n < SAMPLES / 2 ? n : SAMPLES - n) / 128);
+    inside += (*temperature * 65536 - inside) / 2048;
+    counts[0] = noise() + sine / 64 + inside / 131072;
     counts[1] = noise() + (n == 5000u ? 20000 : 0);
     counts[2] = noise();
 }
@@ -171,7 +172,8 @@ void product(void) {
     seed = 1;
     sine = 0;
     cosine = 4096;
-    check(allanite_gyro_init(&gyro, sizeof gyro), "gyro");
+    inside = 2500 * 65536;
+    check(allanite_gyro_init(&gyro, sizeof gyro, 100.0f), "gyro");
     make_test();
     for (uint32_t n = 0; n < SAMPLES; n++) {
         int32_t counts[3], temperature;
@@ -187,7 +189,7 @@ void product(void) {
             print_sum("snapshot", stored, length);
         }
         if (n == POWER_LOSS) {
-            check(allanite_gyro_init(&gyro, sizeof gyro), "gyro");
+            check(allanite_gyro_init(&gyro, sizeof gyro, 100.0f), "gyro");
             make_test();
             check(allanite_gyro_restore(&gyro, &test, stored, length), "restore");
             check(allanite_gyro_lost(&gyro, POWER_LOSS - SNAPSHOT), "missing");
@@ -220,6 +222,14 @@ void product(void) {
     print_number((uint32_t)progress);
     print(" pauses ");
     print_number(pauses);
+    print("\n");
+    AllaniteDependence follows;
+    check(allanite_diagnosis_dependence(&diagnosis, &follows), "dependence");
+    print("follows the temperature");
+    print_bits(follows.slope);
+    print_bits(follows.slope_error);
+    print_bits(follows.lag_s);
+    print_bits(follows.lag_error_s);
     print("\n");
 
     static const uint8_t device[] = {'S', 'N', '-', '7'};

@@ -6,7 +6,8 @@
 use allanite::{
     Axes, Model, Real, Scale,
     axis::{AxisRecord, Courses, Gated, Moments, Spectral},
-    diagnosis::{Diagnosis, Options, Progress, Verdict},
+    covariate::Lags,
+    diagnosis::{Addition, Diagnosis, Options, Progress, Verdict},
     effect::CATALOGUE,
     fit::{self, Fit, State, fit},
     self_test::{Failure, Limit, Plan, SelfTest, Status},
@@ -20,14 +21,15 @@ const SAMPLES: u32 = 65_536;
 const SNAPSHOT: u32 = 40_000;
 const POWER_LOSS: u32 = 41_000;
 
-type Gyro = Axes<OCTAVES, 1, Gated, Moments, 3, Spectral<64, 7, 140>, Courses>;
-type Record = AxisRecord<OCTAVES, 1, Spectrum<140>>;
+type Gyro = Axes<OCTAVES, 4, Gated, Moments, 3, Spectral<64, 7, 140>, Courses>;
+type Record = AxisRecord<OCTAVES, 4, Spectrum<140>>;
 
-/// White noise, an oscillation, and a temperature that the first axis follows.
+/// White noise, an oscillation, and a temperature that rises and falls, which the first axis follows with a lag of 20 s.
 struct Sensor {
     seed: u32,
     sine: i32,
     cosine: i32,
+    inside: i32,
 }
 
 impl Sensor {
@@ -46,8 +48,10 @@ impl Sensor {
     fn sample(&mut self, n: u32) -> ([i32; 3], i32) {
         self.sine -= self.cosine * 3 / 4;
         self.cosine += self.sine * 3 / 4;
-        let temperature = 2500 + (n / 256) as i32;
-        let x = self.noise() + self.sine / 64 + temperature / 8;
+        let rise = n.min(SAMPLES - n) / 128;
+        let temperature = 2500 + rise as i32;
+        self.inside += (temperature * 65_536 - self.inside) / 2048;
+        let x = self.noise() + self.sine / 64 + self.inside / 131_072;
         let y = self.noise() + if n == 5000 { 20_000 } else { 0 };
         let z = self.noise();
         ([x, y, z], temperature)
@@ -135,19 +139,22 @@ fn print_sum(what: &str, bytes: &[u8]) {
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let scale = Scale::new((1.0_f32 / 131.0).into(), 100.0)?;
-    let kelvin = [Real::from(0.01_f32)];
+    let kelvin = [Real::from(0.01_f32) / Lags::<4>::PER_COUNT as Real; 4];
     let mut sensor = Sensor {
         seed: 1,
         sine: 0,
         cosine: 4096,
+        inside: 2500 * 65_536,
     };
+    // The temperature as it is, and behind lags of 10, 41 and 164 s.
+    let mut lags = Lags::new([0, 10, 12, 14]);
     let mut gyro = Box::new(Gyro::new());
     let mut tests = [self_test(scale)?];
     let mut buffer = vec![0; Gyro::snapshot_bytes(1)];
     let mut stored = Vec::new();
     for n in 0..SAMPLES {
         let (counts, temperature) = sensor.sample(n);
-        gyro.push((counts, [temperature]));
+        gyro.push((counts, lags.push(temperature)));
         while gyro.advance() {}
         if tests[0].is_due(gyro.samples()) {
             let x = gyro.record_so_far(0, (scale, kelvin))?;
@@ -159,6 +166,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         }
         if n == POWER_LOSS {
             gyro.reset();
+            lags = Lags::new([0, 10, 12, 14]);
             tests = [self_test(scale)?];
             gyro.restore(&mut tests, &stored)?;
             gyro.lost((POWER_LOSS - SNAPSHOT).into());
@@ -172,6 +180,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     print_fit(&model, &fit(&x, &model, fit::Options::default())?);
     let mut diagnosis = Diagnosis::new(&x, &model, &CATALOGUE, Options::default());
     let mut axis = AxisCertificate::empty();
+    let mut dependence = None;
     let mut pauses = 0;
     let mut count = || {
         pauses += 1;
@@ -182,6 +191,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             Progress::Paused => {}
             Progress::Step(step) => {
                 print_fit(&step.model, &step.fit);
+                if let Some(Addition::Covariate(followed)) = &step.added {
+                    dependence = followed.dependence(&lags, 100.0);
+                }
                 axis.take(&x, step)?;
             }
             Progress::Finished(verdict) => break verdict,
@@ -197,6 +209,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         _ => 8,
     };
     println!("verdict {code} pauses {pauses}");
+    let follows = dependence.map_or([Real::NAN; 4], |it| {
+        let error_s = it.lag_error_s.unwrap_or(Real::NAN);
+        [it.slope.value, it.slope.error, it.lag_s, error_s]
+    });
+    println!("follows the temperature{}", follows.map(bits).concat());
 
     axis.verdict = Some(verdict);
     let conditions = Conditions {

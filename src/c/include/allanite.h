@@ -119,13 +119,13 @@
 #endif
 
 // Words of an `AllaniteGyro`.
-#define ALLANITE_GYRO_WORDS (3282 + (69 * ALLANITE_OCTAVES))
+#define ALLANITE_GYRO_WORDS (4140 + (141 * ALLANITE_OCTAVES))
 
 // Words of an `AllaniteAxis`.
 #define ALLANITE_AXIS_WORDS (24 + (12 * ALLANITE_OCTAVES))
 
 // Words of an `AllaniteRecord`.
-#define ALLANITE_RECORD_WORDS (478 + (8 * ALLANITE_OCTAVES))
+#define ALLANITE_RECORD_WORDS (500 + (17 * ALLANITE_OCTAVES))
 
 // Words of an `AllaniteSelfTest`.
 #define ALLANITE_SELF_TEST_WORDS 38
@@ -134,13 +134,13 @@
 #define ALLANITE_LOOK_WORDS (74 + (3 * ALLANITE_OCTAVES))
 
 // Words of an `AllaniteDiagnosis`.
-#define ALLANITE_DIAGNOSIS_WORDS (1650 + (10 * ALLANITE_OCTAVES))
+#define ALLANITE_DIAGNOSIS_WORDS (1652 + (10 * ALLANITE_OCTAVES))
 
 // Words of an `AllaniteCertificate`.
 #define ALLANITE_CERTIFICATE_WORDS 560
 
 // Bytes of a buffer for any snapshot of a record and a self-test.
-#define ALLANITE_SNAPSHOT_BYTES (20325 + (307 * ALLANITE_OCTAVES))
+#define ALLANITE_SNAPSHOT_BYTES (26115 + (745 * ALLANITE_OCTAVES))
 
 // Bytes of a buffer for any certificate.
 #define ALLANITE_CERTIFICATE_BYTES 3700
@@ -575,6 +575,21 @@ typedef struct {
 #endif
 
 #if defined(ALLANITE_WHOLE)
+// How the rate follows the temperature. All numbers are NaN if it does not.
+typedef struct {
+  // The change of the rate for each kelvin, in the unit of the rate.
+  float slope;
+  // Its standard error.
+  float slope_error;
+  // By how much the rate is late, in seconds.
+  float lag_s;
+  // The standard error of the lag; NaN if the rate follows one of the bank's temperatures alone, whose lag is then near the true
+  // one.
+  float lag_error_s;
+} AllaniteDependence;
+#endif
+
+#if defined(ALLANITE_WHOLE)
 // The record of a gyro. It may be copied and moved while no function works on it.
 typedef struct {
   // Nothing for the caller to read.
@@ -774,6 +789,16 @@ AllaniteStatus allanite_diagnosis_fit(const AllaniteDiagnosis *diagnosis, Allani
 #endif
 
 #if defined(ALLANITE_WHOLE)
+// How the rate follows the temperature in the model of the last step, also behind a lag: what of the temperature was then taken out of
+// the record.
+//
+// # Safety
+// `diagnosis` is null, or points to an `AllaniteDiagnosis`; `to` is null, or points to an `AllaniteDependence`.
+AllaniteStatus allanite_diagnosis_dependence(const AllaniteDiagnosis *diagnosis,
+                                             AllaniteDependence *to);
+#endif
+
+#if defined(ALLANITE_WHOLE)
 // Takes the record of an axis from a gyro, to which it does not belong afterwards. `bytes` is
 // `sizeof(AllaniteRecord)`. `rate_per_count` is the rate of one count, `rate_hz` the number of samples per second, and
 // `kelvin_per_count` the temperature of one count of the thermometer.
@@ -821,11 +846,14 @@ AllaniteStatus allanite_fit(const AllaniteRecord *record, AllaniteFit *to);
 #endif
 
 #if defined(ALLANITE_WHOLE)
-// Makes an empty record. `bytes` is `sizeof(AllaniteGyro)`.
+// Makes an empty record. `bytes` is `sizeof(AllaniteGyro)`. `rate_hz` is the nominal number of samples per second, between 1/16 and
+// 4 million: it sets the lags with which the rate may follow the temperature.
 //
 // # Safety
 // `gyro` is null, or points to an `AllaniteGyro` that nothing else uses.
-AllaniteStatus allanite_gyro_init(AllaniteGyro *gyro, size_t bytes);
+AllaniteStatus allanite_gyro_init(AllaniteGyro *gyro,
+                                  size_t bytes,
+                                  float rate_hz);
 #endif
 
 #if defined(ALLANITE_WHOLE)

@@ -1,7 +1,7 @@
 //! The diagnosis of an axis, step by step.
 
 use crate::{
-    fit::{AllaniteFit, AllaniteRecord, Record},
+    fit::{AllaniteFit, AllaniteRecord, Taken},
     gyro::BINS,
     memory::{self, Memory, get, get_mut, put, status},
     sizes::{ALLANITE_DIAGNOSIS_WORDS, ALLANITE_OCTAVES},
@@ -9,7 +9,7 @@ use crate::{
 };
 use allanite::{
     Model,
-    diagnosis::{Diagnosis, Options, Progress, Verdict},
+    diagnosis::{Addition, Dependence, Diagnosis, Options, Progress, Verdict},
     effect::CATALOGUE,
     storage::AxisCertificate,
 };
@@ -17,9 +17,10 @@ use core::{ffi::c_void, ops::ControlFlow};
 
 /// A diagnosis in progress, and what it has found.
 pub(crate) struct Diagnosing {
-    record: &'static Record,
+    taken: &'static Taken,
     diagnosis: Diagnosis<'static, ALLANITE_OCTAVES, BINS>,
     fit: AllaniteFit,
+    dependence: AllaniteDependence,
     pub(crate) certificate: AxisCertificate,
     pub(crate) verdict: Option<Verdict>,
 }
@@ -75,6 +76,41 @@ impl AllaniteProgress {
     }
 }
 
+/// How the rate follows the temperature. All numbers are NaN if it does not.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct AllaniteDependence {
+    /// The change of the rate for each kelvin, in the unit of the rate.
+    pub slope: f32,
+    /// Its standard error.
+    pub slope_error: f32,
+    /// By how much the rate is late, in seconds.
+    pub lag_s: f32,
+    /// The standard error of the lag; NaN if the rate follows one of the bank's temperatures alone, whose lag is then near the true
+    /// one.
+    pub lag_error_s: f32,
+}
+
+impl AllaniteDependence {
+    const NONE: Self = Self {
+        slope: f32::NAN,
+        slope_error: f32::NAN,
+        lag_s: f32::NAN,
+        lag_error_s: f32::NAN,
+    };
+}
+
+impl From<Dependence> for AllaniteDependence {
+    fn from(found: Dependence) -> Self {
+        Self {
+            slope: found.slope.value as f32,
+            slope_error: found.slope.error as f32,
+            lag_s: found.lag_s as f32,
+            lag_error_s: found.lag_error_s.map_or(f32::NAN, |error| error as f32),
+        }
+    }
+}
+
 /// Begins a diagnosis of an axis: what do the five terms lack? `bytes` is `sizeof(AllaniteDiagnosis)`.
 ///
 /// # Safety
@@ -87,16 +123,17 @@ pub unsafe extern "C" fn allanite_diagnosis_begin(
     record: *const AllaniteRecord,
 ) -> AllaniteStatus {
     // SAFETY: the caller promises what `get` wants, for as long as the diagnosis is used.
-    let record: &'static Record = match unsafe { get(record) } {
-        Ok(record) => record,
+    let taken: &'static Taken = match unsafe { get(record) } {
+        Ok(taken) => taken,
         Err(error) => return error,
     };
     let begun = || {
         let (model, options) = (Model::ieee_952(), Options::default());
         Ok(Diagnosing {
-            record,
-            diagnosis: Diagnosis::new(record, &model, &CATALOGUE, options),
+            taken,
+            diagnosis: Diagnosis::new(&taken.record, &model, &CATALOGUE, options),
             fit: AllaniteFit::EMPTY,
+            dependence: AllaniteDependence::NONE,
             certificate: AxisCertificate::empty(),
             verdict: None,
         })
@@ -163,9 +200,10 @@ unsafe fn advance(
         Err(error) => return error,
     };
     let Diagnosing {
-        record,
+        taken,
         diagnosis,
         fit,
+        dependence,
         certificate,
         verdict,
     } = it;
@@ -174,7 +212,11 @@ unsafe fn advance(
         Ok(Progress::Paused) => AllaniteProgress::Working,
         Ok(Progress::Step(step)) => {
             *fit = AllaniteFit::of(&step.model, &step.fit);
-            if let Err(error) = certificate.take(*record, step) {
+            if let Some(Addition::Covariate(followed)) = &step.added {
+                let found = followed.dependence(&taken.lags, taken.rate_hz);
+                *dependence = found.map_or(AllaniteDependence::NONE, Into::into);
+            }
+            if let Err(error) = certificate.take(&taken.record, step) {
                 return error.into();
             }
             AllaniteProgress::Step
@@ -203,5 +245,23 @@ pub unsafe extern "C" fn allanite_diagnosis_fit(
         Err(error) => error,
         // SAFETY: the caller promises what `put` wants.
         Ok(it) => status(unsafe { put(to, it.fit) }),
+    }
+}
+
+/// How the rate follows the temperature in the model of the last step, also behind a lag: what of the temperature was then taken out of
+/// the record.
+///
+/// # Safety
+/// `diagnosis` is null, or points to an `AllaniteDiagnosis`; `to` is null, or points to an `AllaniteDependence`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn allanite_diagnosis_dependence(
+    diagnosis: *const AllaniteDiagnosis,
+    to: *mut AllaniteDependence,
+) -> AllaniteStatus {
+    // SAFETY: the caller promises what `get` wants.
+    match unsafe { get(diagnosis) } {
+        Err(error) => error,
+        // SAFETY: the caller promises what `put` wants.
+        Ok(it) => status(unsafe { put(to, it.dependence) }),
     }
 }

@@ -3,7 +3,7 @@
 use crate::{
     coefficient::{AllaniteCoefficient, AllaniteState},
     curve::{AllanitePoint, write_points},
-    gyro::{AllaniteGyro, BINS},
+    gyro::{AllaniteGyro, BINS, COVARIATES},
     memory::{self, Memory, get, put, status},
     reason::AllaniteReason,
     sizes::{ALLANITE_OCTAVES, ALLANITE_RECORD_WORDS},
@@ -12,12 +12,20 @@ use crate::{
 use allanite::{
     Model, Real, Scale,
     axis::AxisRecord,
+    covariate::Lags,
     fit::{Fit, Options, fit},
     spectrum::Spectrum,
     storage::EffectCode,
 };
 
-pub(crate) type Record = AxisRecord<ALLANITE_OCTAVES, 1, Spectrum<BINS>>;
+pub(crate) type Record = AxisRecord<ALLANITE_OCTAVES, COVARIATES, Spectrum<BINS>>;
+
+/// A record, and the lags of its thermometer in samples of this rate.
+pub(crate) struct Taken {
+    pub(crate) record: Record,
+    pub(crate) lags: Lags<COVARIATES>,
+    pub(crate) rate_hz: Real,
+}
 
 /// What a record says about one axis at a moment. It must stay where it is, unchanged, while a look or a diagnosis uses
 /// it.
@@ -29,8 +37,8 @@ pub struct AllaniteRecord {
 
 // SAFETY: the type is words, and the mark is its own.
 unsafe impl Memory for AllaniteRecord {
-    type Value = Record;
-    const MARK: u64 = 0x6779_726f_0000_0002 + ALLANITE_OCTAVES as u64 * 0x100;
+    type Value = Taken;
+    const MARK: u64 = 0x6779_726f_0000_0012 + ALLANITE_OCTAVES as u64 * 0x100;
 }
 
 /// Takes the record of an axis from a gyro, to which it does not belong afterwards. `bytes` is
@@ -57,7 +65,13 @@ pub unsafe extern "C" fn allanite_record_take(
     };
     let taken = || {
         let scale = Scale::new(Real::from(rate_per_count), Real::from(rate_hz))?;
-        Ok(gyro.record_so_far(axis, (scale, [Real::from(kelvin_per_count)]))?)
+        let per_count = Lags::<COVARIATES>::PER_COUNT as Real;
+        let kelvin = [Real::from(kelvin_per_count) / per_count; COVARIATES];
+        Ok(Taken {
+            record: gyro.axes.record_so_far(axis, (scale, kelvin))?,
+            lags: gyro.lags.clone(),
+            rate_hz: rate_hz.into(),
+        })
     };
     // SAFETY: the caller promises what `make` wants.
     status(unsafe { memory::make(record, bytes, taken) })
@@ -75,7 +89,7 @@ pub unsafe extern "C" fn allanite_record_summary(
 ) -> AllaniteStatus {
     // SAFETY: the caller promises what `get` wants.
     let record = match unsafe { get(record) } {
-        Ok(record) => record,
+        Ok(taken) => &taken.record,
         Err(error) => return error,
     };
     if !samples.is_null() {
@@ -107,7 +121,9 @@ pub unsafe extern "C" fn allanite_record_curve(
     // SAFETY: the caller promises what `get` wants.
     let record = unsafe { get(record) };
     // SAFETY: the caller promises what `write_points` wants.
-    status(record.and_then(|it| unsafe { write_points(&it.curve, points, capacity, number) }))
+    status(
+        record.and_then(|it| unsafe { write_points(&it.record.curve, points, capacity, number) }),
+    )
 }
 
 /// The largest number of effects in a model.
@@ -242,7 +258,7 @@ pub unsafe extern "C" fn allanite_fit(
 ) -> AllaniteStatus {
     // SAFETY: the caller promises what `get` wants.
     let record = match unsafe { get(record) } {
-        Ok(record) => record,
+        Ok(taken) => &taken.record,
         Err(error) => return error,
     };
     let model = Model::ieee_952();

@@ -6,16 +6,58 @@ use crate::{
     status::AllaniteStatus,
 };
 use allanite::{
-    Axes,
+    Axes, Real,
     axis::{Courses, Gated, Moments, Spectral},
+    covariate::Lags,
 };
 
 /// The bins of a spectrum of five levels.
 pub(crate) const BINS: usize = 140;
 
-/// The record: a gate, fourth moments, a temperature, spectra and courses.
-pub(crate) type Gyro =
-    Axes<ALLANITE_OCTAVES, 1, Gated, Moments, ALLANITE_AXES, Spectral<64, 7, BINS>, Courses>;
+/// The temperature as it is, and behind three lags. With two lags of the same range, a rate that follows the temperature keeps a false
+/// random walk in a quarter of the records of `host-tests/tests/library/covariate_lag.rs`; with three, in one of a hundred at most.
+pub(crate) const COVARIATES: usize = 4;
+
+/// The longest lag takes no more than this, and more than half of it. The bank then follows any lag up to 43 s.
+const LONGEST_S: Real = 256.0;
+/// Each lag is so many powers of two longer than the one before, as in that test.
+const APART: u32 = 2;
+
+/// The record: a gate, fourth moments, a temperature and its lags, spectra and courses.
+pub(crate) type Gyro = Axes<
+    ALLANITE_OCTAVES,
+    COVARIATES,
+    Gated,
+    Moments,
+    ALLANITE_AXES,
+    Spectral<64, 7, BINS>,
+    Courses,
+>;
+
+/// A record, and the thermometer's lags.
+pub(crate) struct Recorded {
+    pub(crate) axes: Gyro,
+    pub(crate) lags: Lags<COVARIATES>,
+}
+
+impl Recorded {
+    const EMPTY: Self = Self {
+        axes: Gyro::new(),
+        lags: Lags::new([0; COVARIATES]),
+    };
+}
+
+/// The lags at a sampling rate. `None` if there is no such rate.
+pub(crate) fn lags(rate_hz: Real) -> Option<Lags<COVARIATES>> {
+    let longest = LONGEST_S * rate_hz;
+    let (least, most) = ((1_u32 << (2 * APART)) as Real, (1_u32 << 30) as Real);
+    if !(least..=most).contains(&longest) {
+        return None;
+    }
+    let log2 = (longest as u32).ilog2();
+    let lags = [2, 1, 0].map(|shorter| log2.saturating_sub(shorter * APART));
+    Some(Lags::new([0, lags[0], lags[1], lags[2]]))
+}
 
 /// The record of a gyro. It may be copied and moved while no function works on it.
 #[repr(C)]
@@ -26,11 +68,12 @@ pub struct AllaniteGyro {
 
 // SAFETY: the type is words, and the mark is its own.
 unsafe impl Memory for AllaniteGyro {
-    type Value = Gyro;
-    const MARK: u64 = 0x6779_726f_0000_0001 + ALLANITE_OCTAVES as u64 * 0x100;
+    type Value = Recorded;
+    const MARK: u64 = 0x6779_726f_0000_0011 + ALLANITE_OCTAVES as u64 * 0x100;
 }
 
-/// Makes an empty record. `bytes` is `sizeof(AllaniteGyro)`.
+/// Makes an empty record. `bytes` is `sizeof(AllaniteGyro)`. `rate_hz` is the nominal number of samples per second, between 1/16 and
+/// 4 million: it sets the lags with which the rate may follow the temperature.
 ///
 /// # Safety
 /// `gyro` is null, or points to an `AllaniteGyro` that nothing else uses.
@@ -38,9 +81,17 @@ unsafe impl Memory for AllaniteGyro {
 pub unsafe extern "C" fn allanite_gyro_init(
     gyro: *mut AllaniteGyro,
     bytes: usize,
+    rate_hz: f32,
 ) -> AllaniteStatus {
+    let Some(lags) = lags(rate_hz.into()) else {
+        return AllaniteStatus::InvalidArgument;
+    };
+    // A constant is written where it belongs, without a copy of it on the stack.
     // SAFETY: the caller promises what `make` wants.
-    status(unsafe { memory::make(gyro, bytes, || Ok(const { Gyro::new() })) })
+    let made = unsafe { memory::make(gyro, bytes, || Ok(const { Recorded::EMPTY })) };
+    // SAFETY: there is a value now.
+    let recorded = made.and_then(|()| unsafe { get_mut(gyro) });
+    status(recorded.map(|recorded| recorded.lags = lags))
 }
 
 /// Adds one sample: a count of every axis, and one of the thermometer.
@@ -64,7 +115,7 @@ pub unsafe extern "C" fn allanite_gyro_push(
         for (to, from) in sample.iter_mut().zip(counts) {
             *to = *from;
         }
-        gyro.push((sample, [temperature]));
+        gyro.axes.push((sample, gyro.lags.push(temperature)));
     }))
 }
 
@@ -75,7 +126,7 @@ pub unsafe extern "C" fn allanite_gyro_push(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn allanite_gyro_gap(gyro: *mut AllaniteGyro) -> AllaniteStatus {
     // SAFETY: the caller promises what `get_mut` wants.
-    status(unsafe { get_mut(gyro) }.map(Gyro::gap))
+    status(unsafe { get_mut(gyro) }.map(|gyro| gyro.axes.gap()))
 }
 
 /// Notes that so many samples are missing at this place. Does nothing for 0.
@@ -88,7 +139,7 @@ pub unsafe extern "C" fn allanite_gyro_lost(
     samples: u64,
 ) -> AllaniteStatus {
     // SAFETY: the caller promises what `get_mut` wants.
-    status(unsafe { get_mut(gyro) }.map(|gyro| gyro.lost(samples)))
+    status(unsafe { get_mut(gyro) }.map(|gyro| gyro.axes.lost(samples)))
 }
 
 /// Does a part of the spectra's work that waits, for a main loop with nothing else to do. `more` says whether there is
@@ -102,7 +153,7 @@ pub unsafe extern "C" fn allanite_gyro_advance(
     more: *mut bool,
 ) -> AllaniteStatus {
     // SAFETY: the caller promises what `get_mut` wants.
-    let advanced = unsafe { get_mut(gyro) }.map(Gyro::advance);
+    let advanced = unsafe { get_mut(gyro) }.map(|gyro| gyro.axes.advance());
     match advanced {
         Err(error) => error,
         Ok(_) if more.is_null() => AllaniteStatus::Ok,
@@ -118,7 +169,7 @@ pub unsafe extern "C" fn allanite_gyro_advance(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn allanite_gyro_release(gyro: *mut AllaniteGyro) -> AllaniteStatus {
     // SAFETY: the caller promises what `get_mut` wants.
-    status(unsafe { get_mut(gyro) }.map(Gyro::release))
+    status(unsafe { get_mut(gyro) }.map(|gyro| gyro.axes.release()))
 }
 
 /// Adds another record of the same gyro, as if a gap lay between the two. Where the noise of an axis differs by more than a
@@ -141,8 +192,8 @@ pub unsafe extern "C" fn allanite_gyro_merge(
     };
     // SAFETY: the caller promises what `get_mut` wants, and the two records are not the same.
     match unsafe { get_mut(gyro) } {
-        Ok(gyro) if !gyro.is_like(other) => AllaniteStatus::OtherSensor,
-        gyro => status(gyro.map(|gyro| gyro.merge(other))),
+        Ok(gyro) if !gyro.axes.is_like(&other.axes) => AllaniteStatus::OtherSensor,
+        gyro => status(gyro.map(|gyro| gyro.axes.merge(&other.axes))),
     }
 }
 
@@ -158,7 +209,7 @@ pub unsafe extern "C" fn allanite_gyro_samples(
 ) -> AllaniteStatus {
     // SAFETY: the caller promises what `get` wants.
     let gyro = match unsafe { get(gyro) } {
-        Ok(gyro) => gyro,
+        Ok(gyro) => &gyro.axes,
         Err(error) => return error,
     };
     for (to, value) in [(kept, gyro.samples()), (left_out, gyro.left_out())] {

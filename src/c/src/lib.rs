@@ -13,7 +13,7 @@
 //!
 //! static bool pause(void *context) { feed_watchdog(); return true; }
 //!
-//! allanite_gyro_init(&gyro, sizeof gyro);
+//! allanite_gyro_init(&gyro, sizeof gyro, 100.0f);
 //! while (recording) allanite_gyro_push(&gyro, counts, temperature);
 //! allanite_gyro_release(&gyro);
 //! allanite_record_take(&record, sizeof record, &gyro, 0, 1.0f / 131, 100.0f, 0.01f);

@@ -285,7 +285,7 @@ pub unsafe extern "C" fn allanite_look_begin(
     };
     // SAFETY: the caller promises what `get` wants.
     let record = match unsafe { get(record) } {
-        Ok(record) => record,
+        Ok(taken) => &taken.record,
         Err(error) => return error,
     };
     let begun = || test.begin_look(record).map_err(Into::into);

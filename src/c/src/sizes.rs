@@ -17,20 +17,20 @@ pub const ALLANITE_OCTAVES: usize = 26;
 pub const ALLANITE_OCTAVES: usize = 20;
 
 /// Words of an `AllaniteGyro`.
-pub const ALLANITE_GYRO_WORDS: usize = 3282 + 69 * ALLANITE_OCTAVES;
+pub const ALLANITE_GYRO_WORDS: usize = 4140 + 141 * ALLANITE_OCTAVES;
 /// Words of an `AllaniteAxis`.
 pub const ALLANITE_AXIS_WORDS: usize = 24 + 12 * ALLANITE_OCTAVES;
 /// Words of an `AllaniteRecord`.
-pub const ALLANITE_RECORD_WORDS: usize = 478 + 8 * ALLANITE_OCTAVES;
+pub const ALLANITE_RECORD_WORDS: usize = 500 + 17 * ALLANITE_OCTAVES;
 /// Words of an `AllaniteSelfTest`.
 pub const ALLANITE_SELF_TEST_WORDS: usize = 38;
 /// Words of an `AllaniteLook`.
 pub const ALLANITE_LOOK_WORDS: usize = 74 + 3 * ALLANITE_OCTAVES;
 /// Words of an `AllaniteDiagnosis`.
-pub const ALLANITE_DIAGNOSIS_WORDS: usize = 1650 + 10 * ALLANITE_OCTAVES;
+pub const ALLANITE_DIAGNOSIS_WORDS: usize = 1652 + 10 * ALLANITE_OCTAVES;
 /// Words of an `AllaniteCertificate`.
 pub const ALLANITE_CERTIFICATE_WORDS: usize = 560;
 /// Bytes of a buffer for any snapshot of a record and a self-test.
-pub const ALLANITE_SNAPSHOT_BYTES: usize = 20325 + 307 * ALLANITE_OCTAVES;
+pub const ALLANITE_SNAPSHOT_BYTES: usize = 26115 + 745 * ALLANITE_OCTAVES;
 /// Bytes of a buffer for any certificate.
 pub const ALLANITE_CERTIFICATE_BYTES: usize = 3700;

@@ -25,7 +25,7 @@ pub unsafe extern "C" fn allanite_gyro_snapshot(
 ) -> AllaniteStatus {
     // SAFETY: the caller promises what `get` wants.
     let gyro = match unsafe { get(gyro) } {
-        Ok(gyro) => gyro,
+        Ok(gyro) => &gyro.axes,
         Err(error) => return error,
     };
     let tests: &[SelfTest<ALLANITE_OCTAVES>] = if test.is_null() {
@@ -69,7 +69,7 @@ pub unsafe extern "C" fn allanite_gyro_restore(
     };
     // SAFETY: the caller promises what `get_mut` wants.
     let gyro = match unsafe { get_mut(gyro) } {
-        Ok(gyro) => gyro,
+        Ok(gyro) => &mut gyro.axes,
         Err(error) => return error,
     };
     let tests: &mut [SelfTest<ALLANITE_OCTAVES>] = if test.is_null() {

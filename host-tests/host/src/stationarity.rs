@@ -8,6 +8,7 @@ use allanite::{
     Curve, Error, Model, Scale,
     course::{Course, Event, What, analyse_without},
     fit::{Fit, Options, fit},
+    storage::{AxisCertificate, CertifiedEvent},
 };
 use allanite_log::unit::Unit;
 
@@ -60,6 +61,15 @@ impl Stationarity {
             None
         };
         Ok(Self { events, shifted })
+    }
+
+    /// What a certificate says of it.
+    pub fn certified(axis: &AxisCertificate) -> Self {
+        let events = axis.findings.events.iter().flatten();
+        Self {
+            events: events.map(CertifiedEvent::event).collect(),
+            shifted: None,
+        }
     }
 
     /// Whether something happened that the coefficients do not stand for.

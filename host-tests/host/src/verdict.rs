@@ -209,9 +209,21 @@ pub const fn on_badge(verdict: Verdict) -> &'static str {
     }
 }
 
-/// The verdict that a certificate has, with the effects that were found, which are none if the text is empty.
-pub fn certified(verdict: Option<Verdict>, found: &str) -> String {
+/// The name of a verdict in files, where `is_disturbed` says whether something happened during the record: that of a valid record is
+/// then `not_stationary`, whether its curve is explained or not.
+pub const fn name(verdict: Verdict, is_disturbed: bool) -> &'static str {
     match verdict {
+        Verdict::Invalid(_) => verdict.name(),
+        _ if is_disturbed => NOT_STATIONARY,
+        _ => verdict.name(),
+    }
+}
+
+/// The verdict that a certificate has, with the effects that were found, which are none if the text is empty.
+pub fn certified(verdict: Option<Verdict>, is_disturbed: bool, found: &str) -> String {
+    match verdict {
+        Some(Verdict::Invalid(reason)) => format!("invalid, {reason}"),
+        Some(_) if is_disturbed => NOT_STATIONARY_IN_WORDS.into(),
         None => "not diagnosed".into(),
         Some(Verdict::Adequate) => ADEQUATE.into(),
         Some(verdict @ (Verdict::Improved | Verdict::Incomplete)) if found.is_empty() => {
@@ -221,7 +233,6 @@ pub fn certified(verdict: Option<Verdict>, found: &str) -> String {
         Some(Verdict::Incomplete) => format!("with {found}, part unexplained"),
         Some(Verdict::Unexplained) => "unexplained".into(),
         Some(Verdict::TooShort) => "too short to judge".into(),
-        Some(Verdict::Invalid(reason)) => format!("invalid, {reason}"),
         Some(verdict) => verdict.name().into(),
     }
 }

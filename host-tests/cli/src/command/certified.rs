@@ -34,7 +34,7 @@ const AXES: [&str; MAX_AXES] = ["x", "y", "z"];
 /// How much a certificate tells.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Content {
-    /// Everything, with the limits of detection and the events.
+    /// Everything, with the limits of detection.
     All,
     /// What a lot is judged by, which costs a small part of the time.
     Judged,
@@ -202,11 +202,12 @@ fn of_axis(
     taken?;
     certified.verdict = Some(verdict);
     let is_judged = !matches!(verdict, Verdict::Invalid(_) | Verdict::TooShort);
-    let Some(last) = last.filter(|_| is_judged && content == Content::All) else {
+    let Some(last) = last.filter(|_| is_judged) else {
         return Ok(certified);
     };
     let (curve, spectrum) = observed(&record, (&curve, &spectrum), &last);
-    if matches!(verdict, Verdict::Adequate | Verdict::Improved) {
+    let is_explained = matches!(verdict, Verdict::Adequate | Verdict::Improved);
+    if is_explained && content == Content::All {
         let record = Record {
             course: densities.as_ref(),
             ..Record::new(&curve, &spectrum)

@@ -217,14 +217,9 @@ impl Diagnosed {
         Ok((corrected, densities))
     }
 
-    /// The verdict, as it is written in files. That of a record in which something happened is `not_stationary`,
-    /// whether its curve is explained or not.
+    /// The verdict, as it is written in files.
     pub fn verdict_name(&self) -> &'static str {
-        if self.stationarity.is_disturbed() {
-            verdict::NOT_STATIONARY
-        } else {
-            self.verdict.name()
-        }
+        verdict::name(self.verdict, self.stationarity.is_disturbed())
     }
 
     /// The first step, which has the five terms, and the last one.

@@ -13,6 +13,8 @@ pub enum Decision {
     Guarded,
     /// No model explains the record, so that no interval says anything about a limit.
     Misfit,
+    /// Something happened during the record, so that its coefficients stand for a mixture.
+    NotStationary,
     /// The record is not one of a gyro at rest.
     Invalid,
     /// The probability that the coefficient is within the limit is at most the risk.

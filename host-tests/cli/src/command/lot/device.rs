@@ -4,7 +4,7 @@ use allanite::{
     diagnosis::Verdict,
     storage::{AxisCertificate, Certificate, CertifiedTerm},
 };
-use allanite_host::lot::Measurement;
+use allanite_host::{lot::Measurement, stationarity::Stationarity};
 use allanite_log::unit::Unit;
 use std::path::PathBuf;
 
@@ -41,13 +41,13 @@ pub(super) struct Device {
 }
 
 impl Device {
-    /// The axes whose records are valid, each with its place.
+    /// The axes whose coefficients mean something, each with its place.
     fn valid(&self) -> impl Iterator<Item = (usize, &AxisCertificate)> {
         let axes = self.certificate.axes.iter().enumerate();
-        axes.filter(|(_, axis)| !is_invalid(axis))
+        axes.filter(|(_, axis)| !is_invalid(axis) && !is_disturbed(axis))
     }
 
-    /// The terms of all valid axes, each with its place.
+    /// The terms of these axes, each with its place.
     pub(super) fn terms(&self) -> impl Iterator<Item = (Place, &CertifiedTerm)> {
         self.valid().flat_map(|(i, axis)| {
             let terms = axis.terms.iter();
@@ -68,6 +68,11 @@ impl Device {
         let with = axes.filter(move |(_, axis)| axis.verdict.is_some_and(wanted));
         with.map(|(i, _)| i)
     }
+}
+
+/// Whether something happened that the coefficients of an axis do not stand for.
+pub(super) fn is_disturbed(axis: &AxisCertificate) -> bool {
+    Stationarity::certified(axis).is_disturbed()
 }
 
 /// Whether the record of an axis is not valid.

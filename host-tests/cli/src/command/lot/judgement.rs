@@ -1,7 +1,7 @@
 //! The judgement of a lot.
 
 use super::{
-    device::Device,
+    device::{Device, is_disturbed, is_invalid},
     limited::{Limited, Rule},
     unusual::{Drift, Drifts, Outlier, outliers, unit_of, worst_first},
 };
@@ -11,6 +11,7 @@ use allanite_host::{
     confidence::share_is_at_most,
     lot::{Decision, Measurement},
     schema::ReasonName,
+    stationarity::Stationarity,
 };
 use allanite_log::unit::Unit;
 use schemars::JsonSchema;
@@ -42,6 +43,8 @@ pub(super) struct Lot {
     pub(super) guarded: usize,
     /// Devices of which no model explains an axis, so that nothing is decided.
     pub(super) misfit: usize,
+    /// Devices with a record in which something happened, so that nothing is decided.
+    pub(super) not_stationary: usize,
     /// Devices with a record that is not one of a gyro at rest.
     pub(super) not_valid: usize,
     /// Devices with a coefficient above its limit.
@@ -59,6 +62,8 @@ pub(super) struct Lot {
     pub(super) undecided: Vec<Undecided>,
     /// Axes whose records are not valid. Nothing is decided of them, and they are left out of all that follows.
     pub(super) invalid: Vec<Invalid>,
+    /// Axes during whose records something happened. They are left out as well.
+    pub(super) disturbed: Vec<Disturbed>,
     /// Axes that a diagnosis did not explain. Nothing is decided of these either.
     pub(super) unexplained: Vec<Named>,
     /// Devices that are unlike the others.
@@ -100,6 +105,15 @@ pub(super) struct Undecided {
 pub(super) struct Named {
     pub(super) device: String,
     pub(super) axis: String,
+}
+
+/// An axis during whose record something happened.
+#[derive(Serialize, JsonSchema)]
+pub(super) struct Disturbed {
+    pub(super) device: String,
+    pub(super) axis: String,
+    /// The strongest event, in words.
+    pub(super) words: String,
 }
 
 /// An axis whose record is not valid.
@@ -145,6 +159,7 @@ impl Lot {
             passed,
             guarded: count(Decision::Guarded),
             misfit: count(Decision::Misfit),
+            not_stationary: count(Decision::NotStationary),
             not_valid: count(Decision::Invalid),
             failed: count(Decision::Failed),
             yield_share: share,
@@ -154,6 +169,7 @@ impl Lot {
             failures: failures(devices, rules),
             undecided: undecided(devices, rules),
             invalid: invalid(devices),
+            disturbed: disturbed(devices),
             unexplained: named(devices, |verdict| {
                 matches!(verdict, Verdict::Unexplained | Verdict::Incomplete)
             }),
@@ -189,6 +205,22 @@ fn named(devices: &[Device], wanted: fn(Verdict) -> bool) -> Vec<Named> {
         device.axes_with(wanted).map(|axis| Named {
             device: device.id.clone(),
             axis: decode::axis_name(axis),
+        })
+    });
+    axes.collect()
+}
+
+/// The valid axes during whose records something happened.
+fn disturbed(devices: &[Device]) -> Vec<Disturbed> {
+    let axes = devices.iter().flat_map(|device| {
+        let axes = device.certificate.axes.iter().enumerate();
+        let disturbed = axes.filter(|(_, axis)| !is_invalid(axis) && is_disturbed(axis));
+        disturbed.map(|(place, axis)| Disturbed {
+            device: device.id.clone(),
+            axis: decode::axis_name(place),
+            words: Stationarity::certified(axis)
+                .strongest(device.unit)
+                .unwrap_or_default(),
         })
     });
     axes.collect()

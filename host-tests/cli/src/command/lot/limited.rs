@@ -1,6 +1,6 @@
 //! A coefficient of a lot beside its limit.
 
-use super::device::Device;
+use super::device::{self, Device};
 use crate::command::decode;
 use allanite::diagnosis::Verdict;
 use allanite_host::{
@@ -30,6 +30,7 @@ pub(super) struct Limited {
     pub(super) passed: usize,
     pub(super) guarded: usize,
     pub(super) misfit: usize,
+    pub(super) not_stationary: usize,
     pub(super) not_valid: usize,
     pub(super) failed: usize,
     /// How many of those that passed are expected to be above the limit, by their own uncertainties.
@@ -91,6 +92,7 @@ impl Rule {
         let certified = device.certificate.axes.get(axis);
         match certified.and_then(|axis| axis.verdict) {
             Some(Verdict::Invalid(_)) => Decision::Invalid,
+            _ if certified.is_some_and(device::is_disturbed) => Decision::NotStationary,
             Some(Verdict::Unexplained | Verdict::Incomplete) => Decision::Misfit,
             _ => {
                 let known = device.measurement((axis, self.limit.effect.name()));
@@ -137,6 +139,7 @@ impl Limited {
             passed: with(Decision::Passed).count(),
             guarded: with(Decision::Guarded).count(),
             misfit: with(Decision::Misfit).count(),
+            not_stationary: with(Decision::NotStationary).count(),
             not_valid: with(Decision::Invalid).count(),
             failed: with(Decision::Failed).count(),
             expected_false_passes: total(with(Decision::Passed).map(|(_, within)| 1.0 - within)),

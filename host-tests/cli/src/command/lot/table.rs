@@ -1,7 +1,7 @@
 //! The results of a lot as one table: one row for each device and axis, whose columns are named with their units.
 
 use super::{
-    device::{Device, is_invalid},
+    device::{Device, is_disturbed, is_invalid},
     judgement::Judged,
     limited::Rule,
 };
@@ -13,7 +13,7 @@ use allanite::{
 };
 use allanite_host::{
     lot::{Decision, Measurement, difference},
-    units,
+    units, verdict,
 };
 use std::{borrow::Cow, collections::BTreeMap};
 
@@ -75,6 +75,7 @@ pub(super) const fn name(decision: Decision) -> &'static str {
         Decision::Passed => "pass",
         Decision::Guarded => "guard_band",
         Decision::Misfit => "misfit",
+        Decision::NotStationary => verdict::NOT_STATIONARY,
         Decision::Invalid => "invalid",
         Decision::Failed => "fail",
     }
@@ -183,7 +184,8 @@ fn axis<'a>(rows: &[Row<'a>], judged: &Judged<'a>) -> Vec<Column<'a>> {
             decisions.max().map(|one| name(one).into())
         }),
         text("verdict", rows, |row| {
-            row.certificate.verdict.map(|verdict| verdict.name().into())
+            let is_disturbed = is_disturbed(row.certificate);
+            (row.certificate.verdict).map(|verdict| verdict::name(verdict, is_disturbed).into())
         }),
         text("invalid_because", rows, |row| {
             match row.certificate.verdict {

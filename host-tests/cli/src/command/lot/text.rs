@@ -1,7 +1,7 @@
 //! The judgement of a lot as text.
 
 use super::judgement::{Lot, reasons};
-use allanite_host::{number::number, words::plain};
+use allanite_host::{number::number, verdict, words::plain};
 use comfy_table::{CellAlignment, Table, presets::NOTHING};
 use std::io::{self, Write};
 
@@ -14,12 +14,13 @@ pub(super) fn print(lot: &Lot, output: &mut impl Write) -> io::Result<()> {
     let [low, high] = lot.yield_interval.map(percent);
     writeln!(
         output,
-        "{} device{}: {} pass, {} in a guard band, {}{}{} fail",
+        "{} device{}: {} pass, {} in a guard band, {}{}{}{} fail",
         lot.devices,
         if lot.devices == 1 { "" } else { "s" },
         lot.passed,
         lot.guarded,
         if_any(lot.misfit, "not explained"),
+        if_any(lot.not_stationary, verdict::NOT_STATIONARY_IN_WORDS),
         if_any(lot.not_valid, "not valid"),
         lot.failed
     )?;
@@ -41,6 +42,10 @@ pub(super) fn print(lot: &Lot, output: &mut impl Write) -> io::Result<()> {
     })?;
     let reasons = reasons(&lot.invalid);
     list(output, "not valid, not judged", &reasons, String::clone)?;
+    let heading = format!("{}, not judged", verdict::NOT_STATIONARY_IN_WORDS);
+    list(output, &heading, &lot.disturbed, |one| {
+        format!("{} {}: {}", one.device, one.axis, one.words)
+    })?;
     list(
         output,
         "not explained, not judged",
@@ -129,7 +134,7 @@ fn limits(lot: &Lot) -> Table {
             one.unit.clone(),
             one.passed.to_string(),
             one.guarded.to_string(),
-            (one.misfit + one.not_valid).to_string(),
+            (one.misfit + one.not_stationary + one.not_valid).to_string(),
             one.failed.to_string(),
             format!("{wrong:.1}"),
         ]

@@ -75,7 +75,11 @@ fn summary(lot: &Lot) -> Markup {
     let parts = [
         ("pass", "pass", lot.passed),
         ("guard", "are in a guard band", lot.guarded),
-        ("none", "are not judged", lot.misfit + lot.not_valid),
+        (
+            "none",
+            "are not judged",
+            lot.misfit + lot.not_stationary + lot.not_valid,
+        ),
         ("fail", "fail", lot.failed),
     ];
     let mut from = 0.0;
@@ -120,11 +124,11 @@ fn lead(lot: &Lot) -> String {
         let of = count(lot.guarded, "device");
         parts.push(format!("A longer record may decide {of}."));
     }
-    let unjudged = lot.misfit + lot.not_valid;
+    let unjudged = lot.misfit + lot.not_stationary + lot.not_valid;
     if unjudged > 0 {
         let of = count(unjudged, "device");
         parts.push(format!(
-            "Of {of}, nothing is decided: no model explains the record, or it is not one of a gyro at rest."
+            "Of {of}, nothing is decided: no model explains the record, something happened during it, or it is not one of a gyro at rest."
         ));
     }
     let mut devices: Vec<&str> = lot.outliers.iter().map(|one| one.device.as_str()).collect();

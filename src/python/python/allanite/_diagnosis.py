@@ -37,7 +37,7 @@ class AxisDiagnosis:
     covariates : tuple of Covariate
         The columns that were tried, such as temperatures.
     verdict : str
-        One of the names that ``allanite schema diagnose`` lists under ``verdict``.
+        ``adequate``, ``improved``, ``incomplete``, ``unexplained``, ``not_stationary``, ``invalid``, ``too_short`` …
     missing, ambiguous : tuple of str
         The effects that the five terms lack, and others that would explain the curve as well.
     detection_limits : tuple of DetectionLimit

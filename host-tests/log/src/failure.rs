@@ -225,9 +225,11 @@ pub fn report(text: impl fmt::Display) {
 /// most.
 pub fn quoted(text: &[u8]) -> String {
     const LONGEST: usize = 40;
-    let text = String::from_utf8_lossy(text);
-    let mut shown: String = text.chars().take(LONGEST).collect();
-    if shown.len() < text.len() {
+    // A character has four bytes at most, and a text may be a line of a megabyte.
+    let begin = text.get(..4 * LONGEST + 4).unwrap_or(text);
+    let lossy = String::from_utf8_lossy(begin);
+    let mut shown: String = lossy.chars().take(LONGEST).collect();
+    if shown.len() < lossy.len() {
         shown.push('…');
     }
     format!("{shown:?}")
@@ -297,6 +299,30 @@ mod tests {
                 .about(Path::new("a.mcap"))
                 .to_string()
                 .starts_with("b.csv")
+        );
+    }
+
+    #[test]
+    fn a_text_of_any_length_is_quoted_up_to_forty_characters() {
+        for (sign, times, shown) in [
+            ("é", 40, "é".repeat(40)),
+            ("a", 1 << 20, "a".repeat(40) + "…"),
+        ] {
+            assert_eq!(quoted(sign.repeat(times).as_bytes()), format!("{shown:?}"));
+        }
+        let four_bytes = "\u{1d49c}";
+        let shown = four_bytes.repeat(40) + "…";
+        assert_eq!(
+            quoted(four_bytes.repeat(41).as_bytes()),
+            format!("{shown:?}")
+        );
+        // Each byte that is no text is one character.
+        assert_eq!(
+            quoted(&[0xff; 1000])
+                .chars()
+                .filter(|c| *c == '\u{fffd}')
+                .count(),
+            40
         );
     }
 }

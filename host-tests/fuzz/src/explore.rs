@@ -22,11 +22,6 @@ fn session() -> &'static (String, Session) {
     })
 }
 
-/// Reads the records, before the first question.
-pub fn begin() {
-    session();
-}
-
 /// Asks what the first byte selects: with the other bytes as they are, with effects and shapes that they encode, or about
 /// records that they damage.
 pub fn check(bytes: &[u8]) {

@@ -167,7 +167,8 @@ fn no_failing_call_of_watch_loses_a_record() {
     });
     let (faults, found) = (faults.into_inner(), found.into_inner().unwrap());
     println!("{faults} faults");
-    assert!(faults > 300, "{faults}");
+    // A piece of ten lines is one call that reads, and there are three faults for each call.
+    assert!(faults > 200, "{faults}");
     assert!(
         found.is_empty(),
         "{} of {faults}:\n{}",

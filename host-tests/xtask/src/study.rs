@@ -22,6 +22,14 @@ pub(crate) fn run(arguments: &[impl AsRef<OsStr>]) -> Result<()> {
     )
 }
 
+/// Runs a study in small, by the program that the studies' own tests have built.
+pub(crate) fn in_small(arguments: &[impl AsRef<OsStr>]) -> Result<()> {
+    step(
+        "the study",
+        built("run").args(["--bin", "study", "--"]).args(arguments),
+    )
+}
+
 /// Checks the studies, and runs those that are small enough for a test.
 ///
 /// # Errors

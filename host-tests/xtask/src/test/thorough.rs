@@ -20,7 +20,7 @@ const STUDIES: [&[&str]; 7] = [
     &["export", "--walks", "--gyros", "20"],
     &["export", "--consumers"],
     &["five-terms", "--records", "20"],
-    &["theory"],
+    &["theory", "--records", "300"],
 ];
 
 pub(crate) fn run(stages: &mut Stages, built: &Built) -> Result<()> {
@@ -42,7 +42,7 @@ pub(crate) fn run(stages: &mut Stages, built: &Built) -> Result<()> {
             Some(&option @ ("--walks" | "--consumers")) => format!("the study export {option}"),
             _ => format!("the study {}", arguments[0]),
         };
-        stages.run(&name, || study::run(arguments))?;
+        stages.run(&name, || study::in_small(arguments))?;
     }
     stages.run("fleets", || fleet::run(&[]))
 }

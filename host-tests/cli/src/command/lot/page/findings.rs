@@ -69,7 +69,7 @@ pub(super) fn findings(judged: &Judged<'_>) -> Markup {
             (table("outliers", "Outliers", ["value", "median"], outliers, lot.outliers.len()))
             (table("drifted", "Drifted", ["earlier → now", "change"], drifted, lot.drifted.len()))
             (names("Not valid, not judged", "reasons", reasons(&lot.invalid).into_iter()))
-            (names("Not stationary, not judged", "events",
+            (names("Not stationary, not judged", "reasons",
                 lot.disturbed.iter().map(|one| format!("{} {}: {}", one.device, one.axis, one.words))))
             (names("Not explained by the effects of the catalogue, not judged", "names",
                 lot.unexplained.iter().map(|one| format!("{} {}", one.device, one.axis))))

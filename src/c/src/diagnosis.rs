@@ -101,6 +101,8 @@ impl AllaniteDependence {
 }
 
 impl From<Dependence> for AllaniteDependence {
+    // The conversions change nothing in single precision.
+    #[allow(clippy::unnecessary_cast)]
     fn from(found: Dependence) -> Self {
         Self {
             slope: found.slope.value as f32,

@@ -70,7 +70,7 @@ pub unsafe extern "C" fn allanite_record_take(
         Ok(Taken {
             record: gyro.axes.record_so_far(axis, (scale, kelvin))?,
             lags: gyro.lags.clone(),
-            rate_hz: rate_hz.into(),
+            rate_hz: Real::from(rate_hz),
         })
     };
     // SAFETY: the caller promises what `make` wants.

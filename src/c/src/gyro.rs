@@ -83,7 +83,7 @@ pub unsafe extern "C" fn allanite_gyro_init(
     bytes: usize,
     rate_hz: f32,
 ) -> AllaniteStatus {
-    let Some(lags) = lags(rate_hz.into()) else {
+    let Some(lags) = lags(Real::from(rate_hz)) else {
         return AllaniteStatus::InvalidArgument;
     };
     // A constant is written where it belongs, without a copy of it on the stack.

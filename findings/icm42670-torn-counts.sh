@@ -4,7 +4,7 @@
 # What happens: the driver icm42670 reads each byte in a transfer of its own. A sample that comes between the two bytes of an
 # axis gives a count of neither: 0 after -1 reads as -256. At rest, where counts change their sign all the time, polling at
 # 200 Hz over a bus of 400 kHz makes the noise six times as large; nothing is returned that says so.
-# Versions: icm42670 0.2.0, embedded-hal 1.0.0, rand 0.8.5.
+# Versions: icm42670 0.2.0, embedded-hal 1.0.0, rand 0.8.5, rand_distr 0.4.3.
 # Why it matters: the noise density of a healthy gyro is then that of its driver: it depends on the speed of the bus, and on how
 # near to zero the gyro's offset is.
 set -euo pipefail

@@ -131,10 +131,10 @@ pub(super) fn package(files: &[Packed], copyright: &str, about: &About) -> Resul
     let kib = |path: &String| Ok(fs::metadata(root.join(path))?.len().div_ceil(1024));
     let sizes: Vec<u64> = paths.iter().map(kib).collect::<Result<_>>()?;
     let control = [
-        Packed::new("control", about.control(sizes.iter().sum())?),
-        Packed::new("md5sums", sums),
+        Packed::new("DEBIAN/control", about.control(sizes.iter().sum())?),
+        Packed::new("DEBIAN/md5sums", sums),
     ];
-    files::write(&root.join("DEBIAN"), &control)?;
+    files::write(&root, &control)?;
     let mut build = Command::new("dpkg-deb");
     build
         .args(["--build", "--root-owner-group", "-Zgzip", "root", "package"])

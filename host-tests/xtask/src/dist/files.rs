@@ -38,7 +38,7 @@ pub(super) fn write(folder: &Path, files: &[Packed]) -> Result<()> {
         }
     }
     let mut readable = Command::new("chmod");
-    readable.args(["--recursive", "u=rwX,go=rX"]).arg(folder);
+    readable.args(["-R", "u=rwX,go=rX"]).arg(folder);
     answer(&mut readable)?;
     Ok(())
 }
@@ -46,7 +46,7 @@ pub(super) fn write(folder: &Path, files: &[Packed]) -> Result<()> {
 /// Packs files below a folder as gzip, each for itself, without a name and a time in it.
 pub(super) fn gzip(folder: &Path, paths: &[String]) -> Result<()> {
     let mut pack = Command::new("gzip");
-    pack.args(["--best", "--no-name"]).args(paths);
+    pack.arg("-9n").args(paths);
     answer(pack.current_dir(folder))?;
     Ok(())
 }
@@ -57,13 +57,10 @@ pub(super) fn archive(files: &[Packed], name: &str, epoch: u64) -> Result<Vec<u8
     write(&folder.path().join(name), files)?;
     let mut pack = Command::new("tar");
     pack.args(["--create", "--format=gnu", "--sort=name", "--owner=root:0"])
-        .args([
-            "--group=root:0",
-            "--use-compress-program=gzip --best --no-name",
-        ])
+        .args(["--group=root:0", "--use-compress-program=gzip -9n"])
         .arg(format!("--mtime=@{epoch}"))
         .args(["--file=packed", name]);
-    answer(pack.current_dir(folder.path()))?;
+    answer(pack.current_dir(folder.path())).context("the archive needs the `tar` of GNU")?;
     Ok(fs::read(folder.path().join("packed"))?)
 }
 

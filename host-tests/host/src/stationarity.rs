@@ -34,6 +34,17 @@ pub struct Shifted {
     pub without: Fit,
 }
 
+/// Whether an event hardly changes the coefficients.
+fn is_slight(event: &Event) -> bool {
+    matches!(event.what, What::NoiseChange) && (event.size - 1.0).abs() < SLIGHT
+}
+
+/// Whether something happened that the coefficients of a certificate do not stand for.
+pub fn is_disturbed(axis: &AxisCertificate) -> bool {
+    let mut events = axis.findings.events.iter().flatten();
+    !events.all(|event| is_slight(&event.event()))
+}
+
 impl Stationarity {
     /// Looks for events beside the noise of a model. `followed` is what follows a covariate, in the blocks of the
     /// course; the curve is without it.
@@ -63,7 +74,7 @@ impl Stationarity {
         Ok(Self { events, shifted })
     }
 
-    /// What a certificate says of it.
+    /// The events that a certificate has.
     pub fn certified(axis: &AxisCertificate) -> Self {
         let events = axis.findings.events.iter().flatten();
         Self {
@@ -74,9 +85,6 @@ impl Stationarity {
 
     /// Whether something happened that the coefficients do not stand for.
     pub fn is_disturbed(&self) -> bool {
-        let is_slight = |event: &Event| {
-            matches!(event.what, What::NoiseChange) && (event.size - 1.0).abs() < SLIGHT
-        };
         !self.events.iter().all(is_slight)
     }
 

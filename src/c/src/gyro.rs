@@ -15,7 +15,8 @@ use allanite::{
 pub(crate) const BINS: usize = 140;
 
 /// The temperature as it is, and behind three lags. With two lags of the same range, a rate that follows the temperature keeps a false
-/// random walk in a quarter of the records of `host-tests/tests/library/covariate_lag.rs`; with three, in one of a hundred at most.
+/// random walk in a quarter of the records of `host-tests/tests/library/covariate_lag.rs` (its bank `[0, 10, 12]`); with three, in
+/// one of a hundred at most.
 pub(crate) const COVARIATES: usize = 4;
 
 /// The longest lag takes no more than this, and more than half of it. The bank then follows any lag up to 43 s.

@@ -12,7 +12,7 @@ use allanite::{
 use allanite_host::{
     event_json, model_json,
     schema::{self, Numbers, ReasonName, StateName, UnitName, VerdictName},
-    stationarity::Stationarity,
+    stationarity::is_disturbed,
     units, verdict,
 };
 use allanite_log::unit::Unit;
@@ -192,10 +192,9 @@ fn axis(name: String, axis: &AxisCertificate, unit: Unit) -> Axis {
         Some(Verdict::Invalid(reason)) => Some(reason),
         _ => None,
     };
-    let is_disturbed = Stationarity::certified(axis).is_disturbed();
     Axis {
         axis: name,
-        verdict: (axis.verdict).map(|verdict| verdict::name(verdict, is_disturbed)),
+        verdict: (axis.verdict).map(|verdict| verdict::name(verdict, is_disturbed(axis))),
         invalid: reason.map(|reason| reason.to_string()),
         reason: reason.as_ref().map(Reason::name),
         found: axis.found().map(|term| term.effect.name()).collect(),

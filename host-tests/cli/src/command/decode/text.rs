@@ -9,7 +9,7 @@ use allanite::{
 };
 use allanite_host::{
     number::{duration, number, probability},
-    stationarity::Stationarity,
+    stationarity::is_disturbed,
     units,
     verdict::{ambiguous, certified},
     words,
@@ -107,8 +107,7 @@ fn p_value(axis: &AxisCertificate, before: &str) -> String {
 /// The verdict, with the effects that were found.
 fn judgement(axis: &AxisCertificate) -> String {
     let found = words::list(axis.found().map(|term| term.effect.name()));
-    let is_disturbed = Stationarity::certified(axis).is_disturbed();
-    certified(axis.verdict, is_disturbed, &found)
+    certified(axis.verdict, is_disturbed(axis), &found)
 }
 
 /// What a diagnosis found besides the terms, one line each.

@@ -4,7 +4,7 @@ use allanite::{
     diagnosis::Verdict,
     storage::{AxisCertificate, Certificate, CertifiedTerm},
 };
-use allanite_host::{lot::Measurement, stationarity::Stationarity};
+use allanite_host::{lot::Measurement, stationarity::is_disturbed};
 use allanite_log::unit::Unit;
 use std::path::PathBuf;
 
@@ -68,11 +68,6 @@ impl Device {
         let with = axes.filter(move |(_, axis)| axis.verdict.is_some_and(wanted));
         with.map(|(i, _)| i)
     }
-}
-
-/// Whether something happened that the coefficients of an axis do not stand for.
-pub(super) fn is_disturbed(axis: &AxisCertificate) -> bool {
-    Stationarity::certified(axis).is_disturbed()
 }
 
 /// Whether the record of an axis is not valid.

@@ -1,7 +1,7 @@
 //! The judgement of a lot.
 
 use super::{
-    device::{Device, is_disturbed, is_invalid},
+    device::{Device, is_invalid},
     limited::{Limited, Rule},
     unusual::{Drift, Drifts, Outlier, outliers, unit_of, worst_first},
 };
@@ -11,7 +11,7 @@ use allanite_host::{
     confidence::share_is_at_most,
     lot::{Decision, Measurement},
     schema::ReasonName,
-    stationarity::Stationarity,
+    stationarity::{Stationarity, is_disturbed},
 };
 use allanite_log::unit::Unit;
 use schemars::JsonSchema;

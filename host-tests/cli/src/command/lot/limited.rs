@@ -1,11 +1,12 @@
 //! A coefficient of a lot beside its limit.
 
-use super::device::{self, Device};
+use super::device::Device;
 use crate::command::decode;
 use allanite::diagnosis::Verdict;
 use allanite_host::{
     limit::Limit,
     lot::{Capability, Decision, ErrorModel, Measurement, Sample, acceptance_limit},
+    stationarity::is_disturbed,
     units,
 };
 use allanite_log::unit::Unit;
@@ -92,7 +93,7 @@ impl Rule {
         let certified = device.certificate.axes.get(axis);
         match certified.and_then(|axis| axis.verdict) {
             Some(Verdict::Invalid(_)) => Decision::Invalid,
-            _ if certified.is_some_and(device::is_disturbed) => Decision::NotStationary,
+            _ if certified.is_some_and(is_disturbed) => Decision::NotStationary,
             Some(Verdict::Unexplained | Verdict::Incomplete) => Decision::Misfit,
             _ => {
                 let known = device.measurement((axis, self.limit.effect.name()));

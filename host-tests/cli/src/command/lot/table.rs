@@ -1,7 +1,7 @@
 //! The results of a lot as one table: one row for each device and axis, whose columns are named with their units.
 
 use super::{
-    device::{Device, is_disturbed, is_invalid},
+    device::{Device, is_invalid},
     judgement::Judged,
     limited::Rule,
 };
@@ -13,6 +13,7 @@ use allanite::{
 };
 use allanite_host::{
     lot::{Decision, Measurement, difference},
+    stationarity::is_disturbed,
     units, verdict,
 };
 use std::{borrow::Cow, collections::BTreeMap};
@@ -184,8 +185,8 @@ fn axis<'a>(rows: &[Row<'a>], judged: &Judged<'a>) -> Vec<Column<'a>> {
             decisions.max().map(|one| name(one).into())
         }),
         text("verdict", rows, |row| {
-            let is_disturbed = is_disturbed(row.certificate);
-            (row.certificate.verdict).map(|verdict| verdict::name(verdict, is_disturbed).into())
+            let axis = row.certificate;
+            (axis.verdict).map(|verdict| verdict::name(verdict, is_disturbed(axis)).into())
         }),
         text("invalid_because", rows, |row| {
             match row.certificate.verdict {

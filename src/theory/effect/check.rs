@@ -133,8 +133,10 @@ pub fn check(effect: &dyn Effect) -> Result<(), Flaw> {
         longest_tau_s: interval_s * real(1_u32 << OCTAVES),
     };
     let mut ranges = [[1.0; 3]; MAX_PARAMETERS];
-    for (range, parameter) in ranges.iter_mut().zip(description.parameters) {
-        let tried = (parameter.search_range)(&span);
+    for (place, (range, parameter)) in numbered(ranges.iter_mut().zip(description.parameters)) {
+        let Some(tried) = effect.search_range(place, &span) else {
+            return Err(Flaw::Range(parameter.name));
+        };
         let is_positive = |x: Real| x.is_finite() && x > 0.0;
         let is_range = is_positive(tried.low) && tried.high.is_finite() && tried.high >= tried.low;
         if !is_range || !is_positive(tried.steps_per_octave) {

@@ -208,6 +208,13 @@ pub trait Effect: Sync {
     /// Name, parameters, unit and relations of the effect.
     fn description(&self) -> &'static Description;
 
+    /// The values that a search tries for the shape parameter of this index; `None` if there is none. The default is that of
+    /// the description. An effect whose ranges are known only while the program runs overrides it.
+    fn search_range(&self, parameter: usize, span: &Span) -> Option<SearchRange> {
+        let parameter = self.description().parameters.get(parameter);
+        parameter.map(|parameter| (parameter.search_range)(span))
+    }
+
     /// Whether only a spectrum shows the effect. The octaves of a record without one would take it for anything, so that
     /// a diagnosis does not look for it there. The default is `false`.
     fn needs_spectrum(&self) -> bool {
@@ -350,12 +357,6 @@ impl dyn Effect + '_ {
     pub fn is_whole(&self, parameter: usize) -> bool {
         let parameter = self.parameters().get(parameter);
         parameter.is_some_and(|parameter| parameter.is_whole)
-    }
-
-    /// The values that a search tries for the shape parameter of this index; `None` if there is none.
-    pub fn search_range(&self, parameter: usize, span: &Span) -> Option<SearchRange> {
-        let parameter = self.parameters().get(parameter);
-        parameter.map(|parameter| (parameter.search_range)(span))
     }
 
     /// The effect whose place this one takes in a model.

@@ -1,5 +1,6 @@
 //! Effects as options of the command line: `EFFECT[:parameter=value,…]`.
 
+use crate::own;
 use allanite::{
     Term,
     effect::{CATALOGUE, Domain, Effect, MAX_PARAMETERS, Parameter},
@@ -76,9 +77,9 @@ impl<'a> EffectArgument<'a> {
         })
     }
 
-    /// The name of the effect in the text of an option.
+    /// The name of the effect in the text of an option: `own` for a formula that gives it none.
     pub fn name_in(text: &str) -> &str {
-        text.split(':').next().unwrap_or_default().trim()
+        own::name_in(text).unwrap_or_else(|| text.split(':').next().unwrap_or_default().trim())
     }
 
     /// The failure of this option, with what is wrong and the remedy.
@@ -289,6 +290,9 @@ impl<'a> EffectArgument<'a> {
 
 /// The text of an option that gives a term: its shape, with `~` if it is fitted.
 pub fn written(term: &Term) -> String {
+    if let Some(own) = own::find(term.effect) {
+        return own.written(&term.parameters, term.fitted);
+    }
     let parameters = term.effect.parameters().iter().zip(term.parameters);
     let pairs = parameters.map(|(parameter, value)| {
         let sign = if term.fitted && !parameter.is_whole {

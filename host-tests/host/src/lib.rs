@@ -22,6 +22,7 @@ pub mod lot;
 pub mod model_json;
 pub mod number;
 pub mod overbound;
+pub mod own;
 pub mod quantile;
 pub mod record;
 pub mod rounding;

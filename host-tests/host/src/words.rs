@@ -2,7 +2,7 @@
 
 use super::{
     number::{duration, number, rounded_up, two_digits},
-    units,
+    own, units,
     verdict::ADEQUATE_MODEL,
 };
 use allanite::{
@@ -66,7 +66,8 @@ pub fn explanation(name: &str) -> Option<Explanation> {
             check: "rounding to steps of q at a rate r adds q/√(12 r); log with a finer step: is there less of it?",
         });
     }
-    allanite::effect::explanation(name)
+    let own = || own::named(name).map(|effect| effect.explanation());
+    allanite::effect::explanation(name).or_else(own)
 }
 
 /// Whether an effect of a model stands beside one that takes its place.

@@ -23,7 +23,7 @@ function showTerms() {
 function termRows() {
   const replaced = new Map();
   for (const { effect } of state.added) {
-    const by = effectNamed.get(effect);
+    const by = effectOf(effect);
     if (by.replaces) replaced.set(by.replaces, by.plain);
   }
   const rows = data.catalogue.filter((effect) => effect.is_term).map((effect) => {
@@ -57,7 +57,7 @@ let effectControls = [];
 let effectsShown = "";
 
 function showEffects() {
-  const structure = JSON.stringify([sessions, state.record, state.added.map(({ effect }) => effect)]);
+  const structure = JSON.stringify([sessions, state.record, state.added.map(({ effect, formula }) => [effect, formula, effectOf(effect).parameters.length])]);
   if (structure !== effectsShown) {
     effectsShown = structure;
     effectControls = state.added.map((_, at) => effectControl(at));
@@ -67,7 +67,7 @@ function showEffects() {
 }
 
 function effectControl(at) {
-  const effect = effectNamed.get(state.added[at].effect);
+  const effect = effectOf(state.added[at].effect);
   const same = state.added.slice(0, at).filter((other) => other.effect === effect.name).length;
   const title = same > 0 ? `${effect.plain} ${same + 1}` : effect.plain;
   const id = (name) => `effect-${at}-${name}`;
@@ -164,6 +164,24 @@ function showCatalogue() {
   });
   byId("catalogue").replaceChildren(...rows);
 }
+
+/// Adds an effect of one's own, if the program understands its formula.
+async function addOwn(text) {
+  const next = structuredClone(state);
+  next.added.push(addedOf(text));
+  byId("own-problem").textContent = "";
+  try {
+    takeOwn(await fits.answer(question(next)));
+    change(null, (of) => of.added.push(addedOf(text)));
+  } catch (error) {
+    byId("own-problem").textContent = error.message;
+  }
+}
+
+byId("own").addEventListener("submit", (event) => {
+  event.preventDefault();
+  addOwn(byId("formula").value);
+});
 
 function showControls() {
   showRecords();

@@ -24,6 +24,7 @@ function openSession(text) {
   fits = new Fits((of, given) => {
     byId("problem").textContent = "";
     answer = given;
+    takeOwn(given);
     if (JSON.stringify(question(of)) === JSON.stringify(question(state))) adopt(given);
     show();
   }, (words) => {
@@ -41,7 +42,7 @@ function openSession(text) {
 /// Takes the values of the answer: those that were fitted, and those that the address gave as text.
 function adopt(given) {
   given.added.forEach((added, at) => {
-    state.added[at] = { effect: added.effect, values: added.parameters, fitted: added.fitted };
+    state.added[at] = { effect: added.effect, values: added.parameters, fitted: added.fitted, formula: added.formula ?? undefined };
   });
   history.replaceState(null, "", fragment(state));
 }
@@ -119,7 +120,7 @@ function showThought() {
 
 byId("adopt").addEventListener("click", () => change(null, (of) => {
   const { thought } = data.records[of.record];
-  of.added = thought.with.map((text) => ({ effect: text.split(":")[0], values: [], fitted: text.includes("~"), text }));
+  of.added = thought.with.map(addedOf);
   of.without = [...thought.without];
   of.takenOut = thought.taken_out;
 }));

@@ -11,10 +11,32 @@ let session = null;
 let sessions = 0;
 let effectNamed = new Map();
 
+/// An effect by its name. One of the user's own is known once the program has read its formula.
+const effectOf = (name) => effectNamed.get(name) ?? { name, plain: plain(name), symbol: "", what: "", replaces: null, parameters: [] };
+
+/// Takes what the program says of effects of the user's own.
+function takeOwn(given) {
+  for (const { effect, own } of given.added) if (own) effectNamed.set(effect, own);
+}
+
+const isFormula = (text) => /^\s*(density|covariance)\s*:/.test(text);
+
+/// An effect as its text gives it. The values follow from the answer of the program.
+function addedOf(text) {
+  const named = /;\s*name\s*=\s*([a-z0-9_]+)/.exec(text);
+  const effect = isFormula(text) ? named?.[1] ?? "own" : text.split(":")[0].trim();
+  return { effect, values: [], fitted: text.includes("~") || /\.\./.test(text), text };
+}
+
 /// The value of the option --with for an added effect. A shape that is fitted has `~`; one without values is looked for.
-function withText({ effect, values, fitted, text }) {
+function withText({ effect, values, fitted, text, formula }) {
   if (text !== undefined) return text;
-  const { parameters } = effectNamed.get(effect);
+  const { parameters } = effectOf(effect);
+  if (formula) {
+    const ranges = parameters.map(({ ranges }) => ranges[state.record].join(".."));
+    return [formula, ...parameters.map(({ name }, at) =>
+      ((values[at] ?? null) === null ? `${name}=${ranges[at]}` : `${name}${fitted ? "~" : "="}${values[at]}`))].join("; ");
+  }
   const pairs = parameters.map(({ name, is_whole: isWhole }, at) =>
     ((values[at] ?? null) === null ? null : `${name}${fitted && !isWhole ? "~" : "="}${values[at]}`));
   const given = pairs.filter((pair) => pair !== null);
@@ -50,13 +72,12 @@ function stateOf(hash) {
     }
     if (name === "record" && isRecord(value)) state.record = Number(value);
     if (name === "judged" && isRecord(value)) state.judged.push(Number(value));
-    // The values follow from the answer of the program.
-    if (name === "with") state.added.push({ effect: value.split(":")[0].trim(), values: [], fitted: false, text: value });
+    if (name === "with") state.added.push(addedOf(value));
     if (name === "without") state.without.push(value);
     if (name === "covariate" && value === "out") state.takenOut = true;
   }
   state.judged = [...new Set(state.judged)].filter((record) => record !== state.record).sort((a, b) => a - b);
-  state.added = state.added.filter(({ effect }) => effectNamed.has(effect));
+  state.added = state.added.filter(({ effect, text }) => isFormula(text) || effectNamed.has(effect));
   return state;
 }
 

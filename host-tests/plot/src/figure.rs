@@ -210,12 +210,25 @@ fn colour(effect: &dyn Effect) -> usize {
         effect.replaces().is_none() && effect.mirror().is_none() && !drifts(**effect)
     };
     let mut effects = CATALOGUE.iter().filter(own);
-    effects.position(|other| other.name() == name).unwrap_or(0)
+    // One that is not in the catalogue has the colour after all others.
+    let after = effects.clone().count();
+    effects
+        .position(|other| other.name() == name)
+        .unwrap_or(after)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn effects_that_share_a_colour_are_relatives() {
+        let colours = CATALOGUE.map(colour);
+        let most = colours.iter().max().expect("an effect");
+        // Lines are told by their dashes too where colours come round again.
+        assert!(*most < 2 * crate::sheet::EFFECTS.len(), "{most}");
+        println!("{most}");
+    }
 
     #[test]
     fn lines_of_one_colour_are_told_apart() {

@@ -55,6 +55,7 @@ mod lot;
 mod many;
 mod merge;
 mod overbound;
+mod own_effect;
 mod plot;
 mod readme;
 mod record_over_time;

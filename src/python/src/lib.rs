@@ -29,7 +29,7 @@ mod _native {
     #[pymodule_export]
     use super::diagnosis::Diagnosis;
     #[pymodule_export]
-    use super::effect::check_effect;
+    use super::effect::{check_effect, effect_name};
     #[pymodule_export]
     use super::own::OwnEffect;
     #[pymodule_export]

@@ -199,6 +199,7 @@ pub(crate) fn search(given: Arguments) -> Result<Search, Failure> {
     let search = Search {
         max_effects: options.one("max-effects")?,
         filter: options.text("filter"),
+        own: options.list("try"),
     };
     options.finish()?;
     Ok(search)

@@ -58,3 +58,24 @@ def test_names_are_checked():
     for name in ("sinusoid", "My Effect", ""):
         with pytest.raises(allanite.AllaniteError):
             allanite.OwnEffect(name, correlated(1))
+
+
+SERVO = "density: 1/(1 + (f/corner_hz)^2); corner_hz=0.02..5; name=servo"
+
+
+def test_a_formula_is_an_effect_of_a_model(five):
+    servo = five + SERVO
+    assert servo.error < 0.5 * five.error
+    corner = servo.effects[-1].parameters["corner_hz"]
+    # Noise with a correlation time of 0.8 s falls from 0.2 Hz on.
+    assert corner == pytest.approx(1 / (2 * math.pi * 0.8), rel=0.1)
+    assert "+ servo" in str(servo)
+    assert (servo - "servo").chi2 == five.chi2
+    with pytest.raises(allanite.AllaniteError, match="close the parenthesis"):
+        five + "density: 1/(1 + f"
+
+
+def test_a_formula_is_tried_beside_the_catalogue(five):
+    record = five._of
+    found = record.diagnose(own=SERVO)
+    assert [one for one in found.axes[0].missing] in (["servo"], ["gauss_markov"])

@@ -2,15 +2,17 @@
 
 use crate::{
     effect_argument::{EffectArgument, Shape},
-    known_filter,
+    known_filter, own,
 };
-use allanite::{Model, Term, model::MAX_EFFECTS};
+use allanite::{Model, Term, effect::Effect};
 use allanite_log::failure::{Failure, quoted};
+
+const TOO_MANY: &str = "the model would have too many effects";
 
 /// Effects to add and terms to leave out, as texts of options.
 #[derive(Clone, Debug, Default)]
 pub struct ModelChoice {
-    /// The effects to add: `sinusoid:frequency_hz=0.3`.
+    /// The effects to add: `sinusoid:frequency_hz=0.3`, or `density: 1/(1+(f/3)^2)`.
     pub with: Vec<String>,
     /// The names of the terms to leave out.
     pub without: Vec<String>,
@@ -45,31 +47,11 @@ impl ModelChoice {
             model = model.without(name);
         }
         for text in &self.with {
-            let mut argument = EffectArgument::parse("--with", text)?;
-            let effect = argument.effect()?;
-            // There can be several lines or resonances, but one filter, and one effect without a shape.
-            let is_single = effect.parameters().is_empty() || effect.replaces().is_some();
-            if is_single && model.position(effect.name()).is_some() {
-                return Err(argument.failure("is in the model already", "drop this option"));
+            if own::is_formula(text) {
+                put_own(&mut model, text)?;
+            } else {
+                put(&mut model, text)?;
             }
-            let term = match argument.known_or_fitted(effect)? {
-                Shape::Known(parameters) => Term::known(effect, parameters),
-                Shape::Fitted(parameters) => Term {
-                    fitted: true,
-                    ..Term::known(effect, parameters)
-                },
-            };
-            if argument.take(effect.coefficient()).is_some() {
-                let what = format!("{} is fitted, not given", effect.coefficient());
-                return Err(argument.failure(what, "give only the shape parameters"));
-            }
-            model.put(term).map_err(|_| {
-                argument.failure(
-                    format!("the model would have more than {MAX_EFFECTS} effects"),
-                    "leave some out with --without",
-                )
-            })?;
-            argument.finish()?;
         }
         if model.terms().is_empty() {
             return Err(Failure::option(
@@ -79,4 +61,55 @@ impl ModelChoice {
         }
         Ok(model)
     }
+}
+
+/// Adds an effect of the catalogue to a model.
+fn put(model: &mut Model, text: &str) -> Result<(), Failure> {
+    let mut argument = EffectArgument::parse("--with", text)?;
+    let effect = argument.effect()?;
+    // There can be several lines or resonances, but one filter, and one effect without a shape.
+    let is_single = effect.parameters().is_empty() || effect.replaces().is_some();
+    if is_single && model.position(effect.name()).is_some() {
+        return Err(argument.failure("is in the model already", "drop this option"));
+    }
+    let term = match argument.known_or_fitted(effect)? {
+        Shape::Known(parameters) => Term::known(effect, parameters),
+        Shape::Fitted(parameters) => Term {
+            fitted: true,
+            ..Term::known(effect, parameters)
+        },
+    };
+    if argument.take(effect.coefficient()).is_some() {
+        let what = format!("{} is fitted, not given", effect.coefficient());
+        return Err(argument.failure(what, "give only the shape parameters"));
+    }
+    let full = |_| argument.failure(TOO_MANY, "leave some out with --without");
+    model.put(term).map_err(full)?;
+    argument.finish()
+}
+
+/// Adds an effect of one's own to a model.
+fn put_own(model: &mut Model, text: &str) -> Result<(), Failure> {
+    let given = own::Given::parse("--with", text)?;
+    let effect: &'static dyn Effect = given.effect;
+    let fail = |what: &str, remedy: &str| {
+        Failure::option(
+            format!("--with {}: {what}", quoted(text.as_bytes())),
+            remedy,
+        )
+    };
+    if given.size.is_some() {
+        return Err(fail("size is fitted, not given", "leave it out"));
+    }
+    if model.position(effect.name()).is_some() {
+        let what = format!("an effect named {} is in the model already", effect.name());
+        return Err(fail(&what, "give it another name: ; name=…"));
+    }
+    let term = Term {
+        fitted: given.is_fitted,
+        ..Term::known(effect, given.parameters)
+    };
+    model
+        .put(term)
+        .map_err(|_| fail(TOO_MANY, "leave some out with --without"))
 }

@@ -3,6 +3,7 @@
 use super::{
     given_filter::Better,
     lines::{self, Line, comb_notes, half_rate_notes},
+    scope::Scope,
 };
 use crate::{
     comb::Comb,
@@ -21,8 +22,7 @@ use allanite::{
     course::Course,
     covariate::{self, Slope},
     detection::{Detection, Limit, Ranges},
-    diagnosis::{Addition, Candidate, FollowedCovariate, Options, Step, Verdict, alternative},
-    effect::CATALOGUE,
+    diagnosis::{Addition, Candidate, FollowedCovariate, Step, Verdict, alternative},
     spectrum::Spectrum,
 };
 use allanite_log::{BINS, Disturbance, Evidence, OCTAVES};
@@ -56,8 +56,8 @@ pub struct Diagnosed {
     pub disturbance: Option<Disturbance>,
     /// The covariates that were tried, with what was found of each. Empty for a record that is not valid.
     pub tried: Vec<TriedCovariate>,
-    /// The options of the search for effects.
-    pub options: Options,
+    /// The effects that were tried, and the options of the search.
+    pub scope: Scope,
     /// The covariates, with what the axis has in common with each of them.
     candidates: Candidates,
 }
@@ -68,9 +68,9 @@ impl Diagnosed {
         axis: AxisCurve,
         evidence: Evidence,
         model: &Model,
-        max_effects: Option<usize>,
+        scope: &Scope,
     ) -> Result<Self, Error> {
-        let mut diagnosed = Self::without_limits(axis, evidence, model, max_effects)?;
+        let mut diagnosed = Self::without_limits(axis, evidence, model, scope)?;
         diagnosed.limits = diagnosed.detection_limits()?;
         Ok(diagnosed)
     }
@@ -80,13 +80,9 @@ impl Diagnosed {
         axis: AxisCurve,
         mut evidence: Evidence,
         model: &Model,
-        max_effects: Option<usize>,
+        scope: &Scope,
     ) -> Result<Self, Error> {
-        let default = Options::default();
-        let options = Options {
-            max_effects: max_effects.unwrap_or(default.max_effects),
-            ..default
-        };
+        let options = scope.options;
         let (course, columns) = (
             evidence.course.take(),
             std::mem::take(&mut evidence.columns),
@@ -102,7 +98,7 @@ impl Diagnosed {
         };
         let diagnose = |model: &Model, options| {
             let mut steps = Vec::new();
-            let verdict = diagnose(record, model, &CATALOGUE, options, |step| {
+            let verdict = diagnose(record, model, &scope.effects, options, |step| {
                 steps.push(step.clone());
             })?;
             Ok((steps, verdict))
@@ -133,7 +129,7 @@ impl Diagnosed {
             columns,
             disturbance,
             tried: Vec::new(),
-            options,
+            scope: scope.clone(),
             candidates,
         };
         diagnosed.lines = diagnosed.lines()?;
@@ -181,7 +177,7 @@ impl Diagnosed {
                 course: course.as_ref(),
                 ..Record::new(&curve, &spectrum)
             };
-            Detection::new(record, last, &CATALOGUE, self.options)
+            Detection::new(record, last, &self.scope.effects, self.scope.options)
                 .run(|limit| limits.push(limit), &mut go_on);
         }
         Ok(limits)

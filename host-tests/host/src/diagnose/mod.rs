@@ -8,5 +8,6 @@ pub mod given_filter;
 pub mod json;
 pub mod lines;
 pub mod pictures;
+pub mod scope;
 pub mod text;
 pub mod words;

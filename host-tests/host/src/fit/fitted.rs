@@ -3,7 +3,7 @@
 use super::judged::Judged;
 use crate::{
     curve_file::AxisCurve,
-    diagnose::diagnosed::Diagnosed,
+    diagnose::{diagnosed::Diagnosed, scope::Scope},
     disturbance::invalid,
     judgement::Judgement,
     limit::LimitArgument,
@@ -212,7 +212,8 @@ pub fn fitted(
 ) -> Result<Vec<Fitted>, Failure> {
     let fit = |(axis, evidence): (AxisCurve, Evidence)| {
         let (model, method) = (settings.model, settings.method);
-        let diagnosed = Diagnosed::without_limits(axis.clone(), evidence.clone(), model, None);
+        let diagnosed =
+            Diagnosed::without_limits(axis.clone(), evidence.clone(), model, &Scope::default());
         let diagnosed =
             diagnosed.map_err(|error| record::library_failure(path, &axis.axis, error))?;
         let judgement = Judgement::of(&diagnosed);

@@ -13,6 +13,7 @@ use crate::{
         self, conclusion,
         diagnosed::Diagnosed,
         drawing::{self, Shown},
+        scope::Scope,
     },
     effect_argument, known_filter,
     record::library_failure,
@@ -48,12 +49,13 @@ impl Diagnosis {
         goes_on: &mut dyn FnMut(usize) -> bool,
     ) -> Result<Self, Failure> {
         let model = known_filter::model(search.filter.as_deref())?;
+        let scope = Scope::new(search.max_effects, &search.own)?;
         let diagnose = |(number, (axis, evidence)): (usize, (AxisCurve, Evidence))| {
             if !goes_on(number) {
                 return Err(Failure::interrupted());
             }
             let name = axis.axis.clone();
-            Diagnosed::new(axis, evidence, &model, search.max_effects)
+            Diagnosed::new(axis, evidence, &model, &scope)
                 .map_err(|error| library_failure(path, &name, error))
         };
         let axes = axes.into_iter().enumerate();

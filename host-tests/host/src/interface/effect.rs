@@ -3,6 +3,11 @@
 use crate::effect_argument::EffectArgument;
 use allanite_log::failure::Failure;
 
+/// The name of the effect that a text gives, which may be a formula.
+pub fn effect_name(text: &str) -> &str {
+    EffectArgument::name_in(text)
+}
+
 /// Reads an effect as the options of `compare` and `diagnose` read it, without a model. The shape of a fitted one may be left
 /// out.
 ///

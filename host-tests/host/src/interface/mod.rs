@@ -18,7 +18,7 @@ mod stored;
 pub use comparison::Comparison;
 pub use deviations::deviations;
 pub use diagnosis::Diagnosis;
-pub use effect::check_effect;
+pub use effect::{check_effect, effect_name};
 pub use own::{Covariance, Own};
 pub use record::Record;
 pub use recording::Recording;

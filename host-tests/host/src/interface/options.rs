@@ -40,6 +40,8 @@ pub struct Search {
     pub max_effects: Option<usize>,
     /// The filter that is known to be in the signal path.
     pub filter: Option<String>,
+    /// Effects of one's own that are tried beside the catalogue, as formulas.
+    pub own: Vec<String>,
 }
 
 /// What is known of samples in memory.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -121,11 +121,15 @@ class Fit(Axes[AxisFit]):
         *,
         max_effects: int | None = None,
         filter: Effect | str | None = None,
+        own: str | Iterable[str] = (),
         progress: Callable[[float], object] | None = None,
     ) -> Diagnosis:
         """Finds the effects that the five terms lack: see :meth:`Record.diagnose`."""
         found: Diagnosis = self.record.diagnose(
-            max_effects=max_effects, filter=filter if filter is not None else self._filter, progress=progress
+            max_effects=max_effects,
+            filter=filter if filter is not None else self._filter,
+            own=own,
+            progress=progress,
         )
         return found
 

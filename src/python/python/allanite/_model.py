@@ -19,7 +19,8 @@ class Model:
     """The five terms and other effects, fitted to one axis of a record.
 
     ``model + Sinusoid(47)`` fits the model with one effect more, ``model - "rate_ramp"`` with one fewer. Both give another
-    model, which knows the one before it, so that the error is seen to fall.
+    model, which knows the one before it, so that the error is seen to fall. An effect that is not in the catalogue is a formula,
+    ``model + "density: 1/(1 + (f/corner_hz)^2); corner_hz=0.1..30"``, or an :class:`OwnEffect`.
 
     Attributes
     ----------
@@ -103,7 +104,7 @@ class Model:
         if not isinstance(effect, (Effect, str)):
             return NotImplemented
         text = effect.written() if isinstance(effect, Effect) else effect
-        name = text.split(":")[0]
+        name = _native.effect_name(text)
         if name in self._without:
             return self._changed(without=tuple(one for one in self._without if one != name))
         return self._changed(with_=(*self._with, text))
@@ -114,7 +115,7 @@ class Model:
         own = tuple(one for one in self._own if one.NAME != name)
         if len(own) < len(self._own):
             return self._changed(own=own)
-        added = [at for at, text in enumerate(self._with) if text.split(":")[0] == name]
+        added = [at for at, text in enumerate(self._with) if _native.effect_name(text) == name]
         if added:
             return self._changed(with_=self._with[: added[-1]] + self._with[added[-1] + 1 :])
         return self._changed(without=(*self._without, name))

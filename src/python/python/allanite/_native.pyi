@@ -88,5 +88,6 @@ class Pieces:
 def deviations(columns: list[tuple[str, NDArray[Any]]], options: _Options, progress: _Progress) -> str:
     """The document of deviations at octaves."""
 
+def effect_name(text: str) -> str: ...
 def check_effect(text: str, fitted: bool) -> None:
     """Reads an effect as the command line does, and raises what it would refuse."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 from . import _columns, _document, _native, _options
@@ -215,6 +215,7 @@ class Record(Axes[Curve]):
         *,
         max_effects: int | None = None,
         filter: Effect | str | None = None,
+        own: str | Iterable[str] = (),
         progress: Progress | None = None,
     ) -> Diagnosis:
         """Finds, one by one, the effects that the five terms lack, as ``allanite diagnose`` does, to the bit.
@@ -225,11 +226,14 @@ class Record(Axes[Curve]):
             The largest number of effects to add; 4 unless given.
         filter : Effect or str, optional
             A filter on the white noise that is known.
+        own : str or iterable of str, optional
+            Effects that are tried beside the catalogue, as formulas: ``"density: 1/(1 + (f/corner_hz)^2); corner_hz=0.1..30"``.
         progress : callable, optional
             Called with the share of the axes that are done, 0 to 1.
         """
         text = filter_text(filter)
-        return Diagnosis._of(self, _options.given(max_effects=max_effects, filter=text), text, progress)
+        options = _options.given(max_effects=max_effects, filter=text) | _options.repeated("try", own)
+        return Diagnosis._of(self, options, text, progress)
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes the curves to a curve file, as ``allanite measure`` does. Its name has to end in ``.json``."""

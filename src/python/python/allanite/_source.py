@@ -6,7 +6,7 @@ The results know these protocols, and records and diagnoses know the results, so
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any, Protocol
 
 from ._curve import Curve
@@ -60,6 +60,7 @@ class Source(Protocol):
         *,
         max_effects: int | None = None,
         filter: Effect | str | None = None,
+        own: str | Iterable[str] = (),
         progress: Callable[[float], object] | None = None,
     ) -> Any:
         """See :meth:`Record.diagnose`."""

@@ -5,7 +5,9 @@ use crate::command::{
     known_filter::KnownFilter,
 };
 use allanite_host::{
-    curve_file::AxisCurve, diagnose::diagnosed::Diagnosed, record::library_failure,
+    curve_file::AxisCurve,
+    diagnose::{diagnosed::Diagnosed, scope::Scope},
+    record::library_failure,
 };
 use allanite_log::{Evidence, Spectrogram, failure::Failure};
 use clap::Args;
@@ -46,7 +48,9 @@ impl DiagnosisArguments {
 
     /// Whether the search begins with the five terms and ends where it ends by itself.
     pub(crate) fn is_plain(&self) -> bool {
-        self.settings.max_effects.is_none() && self.settings.filter.is_none()
+        self.settings.max_effects.is_none()
+            && self.settings.filter.is_none()
+            && self.settings.own.is_empty()
     }
 }
 
@@ -56,6 +60,10 @@ pub(crate) struct DiagnosisSettings {
     /// Largest number of effects to add [default: 4]
     #[arg(long, value_name = "N")]
     max_effects: Option<usize>,
+    /// Look for an effect of your own too, beside those of the catalogue: its power spectral density over the frequency f in
+    /// Hz, as in `density: 1/(1 + (f/corner_hz)^2); corner_hz=0.1..30`, or its autocovariance over the lag t in seconds
+    #[arg(long = "try", value_name = "FORMULA")]
+    own: Vec<String>,
     #[command(flatten)]
     covariates: CovariateArguments,
     #[command(flatten)]
@@ -78,10 +86,11 @@ impl DiagnosisSettings {
         axes: Vec<(AxisCurve, Evidence)>,
     ) -> Result<Vec<OfPage>, Failure> {
         let model = self.filter.model()?;
+        let scope = Scope::new(self.max_effects, &self.own)?;
         let diagnose = |(axis, mut evidence): (AxisCurve, Evidence)| {
             let name = axis.axis.clone();
             let spectrogram = evidence.spectrogram.take();
-            Diagnosed::new(axis, evidence, &model, self.max_effects)
+            Diagnosed::new(axis, evidence, &model, &scope)
                 .map(|diagnosed| (diagnosed, spectrogram))
                 .map_err(|error| library_failure(path, &name, error))
         };

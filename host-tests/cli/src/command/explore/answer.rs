@@ -1,6 +1,7 @@
 //! The answer to a question: a fit with its figures, in JSON.
 
 use super::{
+    catalogue::{Listed, listed_as},
     figure::{self, DrawnModel, DrawnRecord},
     fitted::Fitted,
     question::{Question, with},
@@ -12,7 +13,7 @@ use allanite_host::{
     diagnose::words::{disagreement, shown_p},
     fit::table::state,
     number::number,
-    units, words,
+    own, units, words,
 };
 use allanite_log::{BINS, OCTAVES, unit::Unit};
 use allanite_plot::{Figure, Frame};
@@ -57,6 +58,10 @@ struct GoodnessOfFit {
 struct Added {
     with: String,
     effect: &'static str,
+    /// The formula of an effect of the user's own, without its parameters.
+    formula: Option<String>,
+    /// How such an effect is listed.
+    own: Option<Listed>,
     fitted: bool,
     parameters: Vec<f64>,
     /// The 95 % intervals of fitted parameters.
@@ -156,8 +161,11 @@ fn added(fitted: &Fitted, question: &Question) -> Vec<Added> {
                 let estimate = shape.find(|one| one.term == place && one.name == name)?;
                 Some([estimate.lower, estimate.upper])
             };
+            let own = own::find(term.effect);
             Added {
                 with: with(term),
+                formula: own.map(own::FormulaEffect::formula),
+                own: own.map(|own| listed_as(own, own.explanation(), fitted.records)),
                 effect: term.effect.name(),
                 fitted: term.fitted,
                 intervals: parameters.clone().map(|one| interval(one.name)).collect(),

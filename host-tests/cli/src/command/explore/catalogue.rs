@@ -1,7 +1,7 @@
 //! The catalogue of effects, as the page lists it.
 
 use super::record::SessionRecord;
-use allanite::effect::{EXPLAINED, IEEE_952};
+use allanite::effect::{EXPLAINED, Effect, Explanation, IEEE_952};
 use allanite_host::words;
 use serde::Serialize;
 
@@ -33,11 +33,23 @@ struct ListedParameter {
 
 /// Every effect that is known, with the ranges of its parameters in each of the records.
 pub(super) fn catalogue(records: &[SessionRecord]) -> Vec<Listed> {
-    let listed = EXPLAINED.into_iter().map(|effect| {
-        let explanation = effect.explanation();
-        let name = effect.description().name;
-        let parameters = effect.description().parameters.iter();
-        let parameters = parameters.map(|parameter| ListedParameter {
+    let listed = EXPLAINED.into_iter();
+    listed
+        .map(|effect| listed_as(effect, effect.explanation(), records))
+        .collect()
+}
+
+/// How an effect is listed.
+pub(super) fn listed_as(
+    effect: &dyn Effect,
+    explanation: Explanation,
+    records: &[SessionRecord],
+) -> Listed {
+    let name = effect.description().name;
+    let parameters = effect.description().parameters.iter();
+    let parameters = parameters
+        .enumerate()
+        .map(|(at, parameter)| ListedParameter {
             name: parameter.name,
             plain: words::without_unit(parameter.name, parameter.unit),
             unit: parameter.unit,
@@ -45,25 +57,23 @@ pub(super) fn catalogue(records: &[SessionRecord]) -> Vec<Listed> {
             ranges: records
                 .iter()
                 .map(|record| {
-                    let range = (parameter.search_range)(&record.span());
-                    [range.low, range.high.max(range.low)]
+                    let range = effect.search_range(at, &record.span());
+                    range.map_or([1.0; 2], |range| [range.low, range.high.max(range.low)])
                 })
                 .collect(),
         });
-        Listed {
-            name,
-            plain: words::plain(name),
-            symbol: effect.description().symbol,
-            what: explanation.what,
-            origin: explanation.origin,
-            check: explanation.check,
-            replaces: effect
-                .description()
-                .replaces
-                .map(|replaced| replaced.name()),
-            is_term: IEEE_952.iter().any(|term| term.name() == name),
-            parameters: parameters.collect(),
-        }
-    });
-    listed.collect()
+    Listed {
+        name,
+        plain: words::plain(name),
+        symbol: effect.description().symbol,
+        what: explanation.what,
+        origin: explanation.origin,
+        check: explanation.check,
+        replaces: effect
+            .description()
+            .replaces
+            .map(|replaced| replaced.name()),
+        is_term: IEEE_952.iter().any(|term| term.name() == name),
+        parameters: parameters.collect(),
+    }
 }

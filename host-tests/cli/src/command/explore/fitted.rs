@@ -20,6 +20,8 @@ use allanite_plot::{Figure, Frame, Quantity, View};
 /// A model, its fit to a record, and the records that judge it.
 pub(super) struct Fitted<'a> {
     pub(super) record: &'a SessionRecord,
+    /// All records of the session.
+    pub(super) records: &'a [SessionRecord],
     pub(super) model: Model,
     pub(super) fit: Fit,
     pub(super) curve: Curve<OCTAVES>,
@@ -99,6 +101,7 @@ impl<'a> Fitted<'a> {
             .collect::<Result<_, _>>()?;
         Ok(Self {
             record,
+            records,
             model,
             fit,
             curve,

@@ -12,7 +12,7 @@ use crate::command::input::{
 use allanite::{Curve, Model, effect::Span, spectrum::Spectrum};
 use allanite_host::{
     curve_file::AxisCurve,
-    diagnose::{diagnosed::Diagnosed, pictures},
+    diagnose::{diagnosed::Diagnosed, pictures, scope::Scope},
     words,
 };
 use allanite_log::{
@@ -62,7 +62,7 @@ pub(super) fn read(arguments: &Arguments) -> Result<Vec<(SessionRecord, ListedRe
     let diagnose = |(path, (axis, mut evidence)): (&PathBuf, (AxisCurve, Evidence))| {
         let spectrogram = evidence.spectrogram.take();
         let name = axis.axis.clone();
-        let diagnosed = Diagnosed::new(axis, evidence, &Model::ieee_952(), None);
+        let diagnosed = Diagnosed::new(axis, evidence, &Model::ieee_952(), &Scope::default());
         diagnosed
             .and_then(|diagnosed| explored(path, &diagnosed, spectrogram))
             .map_err(|error| library_failure(path, &name, error))

@@ -12,6 +12,7 @@ use allanite_host::{
     dependence::candidates::Candidate,
     diagnose::{
         diagnosed::Diagnosed,
+        scope::Scope,
         words::{unexplained, verdict},
     },
     disturbance::invalid as words_of_invalid,
@@ -103,7 +104,7 @@ pub(super) fn explained(arguments: &Arguments, sensor: Sensor) -> Result<Vec<Exp
 impl Explained {
     /// The last model of a diagnosis.
     fn diagnosed(axis: AxisCurve, evidence: Evidence, model: &Model) -> Result<Self, Error> {
-        let mut diagnosed = Diagnosed::without_limits(axis, evidence, model, None)?;
+        let mut diagnosed = Diagnosed::without_limits(axis, evidence, model, &Scope::default())?;
         let (verdict, invalid) = (verdict(&diagnosed), diagnosed.invalid());
         let last = diagnosed.steps.len().saturating_sub(1);
         let model_name = diagnosed.model_name(last);

@@ -221,7 +221,10 @@ fn axis(number: usize, diagnosed: &Diagnosed) -> Markup {
 /// The settings with which the page can be made again.
 fn settings(content: &Content) -> Markup {
     let default = Options::default();
-    let options = content.diagnosed.first().map_or(default, |one| one.options);
+    let options = content
+        .diagnosed
+        .first()
+        .map_or(default, |one| one.scope.options);
     let arguments = std::env::args_os().skip(1);
     let arguments = arguments.map(|argument| one_line(&argument.to_string_lossy()));
     let words = std::iter::once("allanite".to_owned()).chain(arguments);

@@ -5,9 +5,10 @@ use allanite::effect::{
 };
 use allanite_host::{
     effect_argument::EffectArgument,
+    own,
     simulate::{Coefficients, Course, Hidden, Thermal},
 };
-use allanite_log::failure::{Failure, brief};
+use allanite_log::failure::{Failure, brief, quoted};
 use clap::Args;
 
 /// The name of the thermal effect, which a curve without a temperature does not reveal.
@@ -19,7 +20,8 @@ pub(super) struct HiddenArguments {
     /// Hide an effect, such as `sinusoid:frequency_hz=0.3,amplitude=0.005`,
     /// `gauss_markov:correlation_time_s=5,rms=0.01`, `decimation_filter:width_s=0.02,stages=2`, or a
     /// temperature on which the rate depends: `thermal:slope=0.01,kelvin=10,time_s=600` for a warm-up,
-    /// `thermal:slope=0.01,kelvin=5,period_s=1200` for a cycle
+    /// `thermal:slope=0.01,kelvin=5,period_s=1200` for a cycle, or an effect of your own, such as
+    /// `density: 1/(1 + (f/corner_hz)^2); corner_hz=3; size=0.01`
     #[arg(long = "effect", value_name = "NAME:parameter=value,…")]
     effects: Vec<String>,
 }
@@ -76,6 +78,10 @@ impl HiddenArguments {
     pub(super) fn effects(&self, coefficients: Coefficients) -> Result<HiddenEffects, Failure> {
         let mut effects = HiddenEffects::default();
         for text in &self.effects {
+            if own::is_formula(text) {
+                effects.hidden.push(hidden_own(text)?);
+                continue;
+            }
             let mut argument = EffectArgument::parse("--effect", text)?;
             if argument.name == THERMAL {
                 if effects.thermal.is_some() {
@@ -97,6 +103,32 @@ impl HiddenArguments {
         }
         Ok(effects)
     }
+}
+
+/// An effect of the user's own.
+fn hidden_own(text: &str) -> Result<Hidden, Failure> {
+    let given = own::Given::parse("--effect", text)?;
+    let fail = |what: &str, remedy: &str| {
+        Failure::option(
+            format!("--effect {}: {what}", quoted(text.as_bytes())),
+            remedy,
+        )
+    };
+    let effect: &'static dyn Effect = given.effect;
+    if given.is_fitted {
+        return Err(fail(
+            "a parameter has no value",
+            "write NAME=VALUE for each",
+        ));
+    }
+    let coefficient = given
+        .size
+        .ok_or_else(|| fail("size is missing", "add ; size=VALUE"))?;
+    Ok(Hidden {
+        effect,
+        parameters: given.parameters,
+        coefficient,
+    })
 }
 
 fn hidden(

@@ -5,6 +5,7 @@ use allanite_host::{
     curve_file::AxisCurve,
     diagnose::{
         diagnosed::Diagnosed,
+        scope::Scope,
         words::{brief, verdict},
     },
 };
@@ -33,7 +34,8 @@ impl Found {
     pub(super) fn of((axis, evidence): (AxisCurve, Evidence)) -> Option<Self> {
         let (name, samples) = (axis.axis.clone(), axis.samples);
         let model = Model::ieee_952();
-        let diagnosed = Diagnosed::without_limits(axis, evidence, &model, None).ok()?;
+        let diagnosed =
+            Diagnosed::without_limits(axis, evidence, &model, &Scope::default()).ok()?;
         let (_, last) = diagnosed.ends()?;
         let octaves = last.comparison.octaves.iter();
         Some(Self {

@@ -174,7 +174,7 @@ async function addOwn(text) {
     takeOwn(await fits.answer(question(next)));
     change(null, (of) => of.added.push(addedOf(text)));
   } catch (error) {
-    byId("own-problem").textContent = error.message;
+    byId("own-problem").textContent = error.message.replace(/^--with [^:]*: /, "");
   }
 }
 

@@ -33,7 +33,7 @@ pub(super) const MODEL: Stroke = Stroke {
 };
 /// Lines of effects. The colours are legible on white, and the dashes distinguish the lines without
 /// colour.
-pub(super) const EFFECTS: [(&str, &str); 8] = [
+pub(super) const EFFECTS: [(&str, &str); 9] = [
     ("#6e7781", "2 4"),
     ("#b35900", "8 4"),
     ("#1a7f37", "8 3 2 3"),
@@ -42,6 +42,7 @@ pub(super) const EFFECTS: [(&str, &str); 8] = [
     ("#1b7c83", "10 3"),
     ("#8250df", "10 3 2 3"),
     ("#9a6700", "4 3"),
+    ("#4d4f9c", "6 3"),
 ];
 
 /// Lines of further effects of a colour that is taken, such as a second resonance.

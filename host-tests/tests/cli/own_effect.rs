@@ -157,7 +157,8 @@ fn a_formula_is_added_moved_and_found_on_the_page() {
             "document.querySelector('#formula').value = {text}"
         ));
         browser.click("#add-own");
-        let done = "document.querySelector('#own-problem').textContent !== '' || state.added.length > 0";
+        let done =
+            "document.querySelector('#own-problem').textContent !== '' || state.added.length > 0";
         while browser.value(done) != true {
             std::thread::sleep(std::time::Duration::from_millis(20));
         }

@@ -1,6 +1,7 @@
 //! Tests effects of a user's own, as formulas: what the catalogue explains by three wrong effects is found as the one that it is.
 
 use crate::{browser::Browser, whole_page::settle};
+use allanite::effect::CATALOGUE;
 use program::{json, number, output, refusal};
 use std::path::Path;
 use tempfile::TempDir;
@@ -56,6 +57,119 @@ fn an_effect_of_ones_own_is_fitted_and_lowers_the_error() {
     let other = "covariance: exp(-t/40)*cos(2*pi*0.1*t)";
     let other = json(folder.path(), &["compare", "log.npy", "--with", other]);
     assert!(number(&other["axes"][0]["p_value"]) < 1e-100);
+}
+
+/// Effects of the catalogue, each as hidden, as fitted by its name, and as a formula. The formulas were written from the meaning of
+/// the effects, with what is aliased at 100 Hz where that matters.
+const BOTH: [[&str; 3]; 15] = [
+    [
+        "gauss_markov:correlation_time_s=5,rms=0.01",
+        "gauss_markov",
+        "covariance: exp(-t/time_s); time_s=0.1..100",
+    ],
+    [
+        "gauss_markov:correlation_time_s=0.5,rms=0.02",
+        "gauss_markov:correlation_time_s=0.5",
+        "density: 1/(1 - 2*exp(-0.02)*cos(2*pi*f*0.01) + exp(-0.04))",
+    ],
+    [
+        "random_telegraph:correlation_time_s=2,rms=0.01",
+        "random_telegraph:correlation_time_s=2",
+        "covariance: exp(-t/2)",
+    ],
+    [
+        "resonance:frequency_hz=3,quality=3,rms=0.02",
+        "resonance:frequency_hz=3,quality=3",
+        "covariance: exp(-pi*t)*cos(2*pi*3*t)",
+    ],
+    [
+        "resonance:frequency_hz=5,quality=4,rms=0.02",
+        "resonance:frequency_hz~4.5,quality~3",
+        "covariance: exp(-pi*f0_hz*t/q)*cos(2*pi*f0_hz*t); f0_hz~4.5; q~3",
+    ],
+    [
+        "drifting_sinusoid:frequency_hz=7,drift_hz=0.5,amplitude=0.02",
+        "drifting_sinusoid:frequency_hz=7,drift_hz=0.5",
+        "covariance: cos(2*pi*7*t)*sinc(pi*0.5*t)",
+    ],
+    [
+        "low_pass:cutoff_hz=10,poles=2",
+        "low_pass:cutoff_hz=10,poles=2",
+        "density: 1/(1+(f/10)^4) + 1/(1+((100-f)/10)^4) + 1/(1+((100+f)/10)^4)",
+    ],
+    [
+        "digital_low_pass:cutoff_hz=20,poles=2",
+        "digital_low_pass:cutoff_hz=20,poles=2",
+        "density: 1/(1 + (tan(pi*f*0.01)/tan(pi*0.2))^4)",
+    ],
+    [
+        "digital_low_pass:cutoff_hz=12,poles=3",
+        "digital_low_pass:cutoff_hz~10,poles=3",
+        "density: 1/(1 + (tan(pi*f*0.01)/tan(pi*corner_hz*0.01))^6); corner_hz~10",
+    ],
+    [
+        "decimation_filter:width_s=0.04,stages=1",
+        "decimation_filter:width_s=0.04,stages=1",
+        "density: (sin(pi*f*0.04)/sin(pi*f*0.01))^2",
+    ],
+    [
+        "cascade:cutoff_hz=15,stages=2",
+        "cascade:cutoff_hz=15,stages=2",
+        "density: 1/(1 - 2*exp(-2*pi*0.15)*cos(2*pi*f*0.01) + exp(-4*pi*0.15))^2",
+    ],
+    ["", "angle_random_walk", "density: 1"],
+    ["", "bias_instability", "density: 1/f"],
+    ["", "rate_random_walk", "density: f^-2"],
+    ["", "quantization", "density: sin(pi*f*0.01)^2"],
+];
+
+#[test]
+fn the_error_falls_by_a_formula_as_by_the_effect_in_rust() {
+    let folder = TempDir::new().unwrap();
+    let gyro = [
+        ["--quantization", "3e-5"],
+        ["--angle-random-walk", "0.005"],
+        ["--bias-instability", "5e-4"],
+        ["--rate-random-walk", "5e-5"],
+        ["--duration", "30min"],
+    ];
+    let chi2 = |log: &str, options: &[&str]| {
+        let document = json(folder.path(), &[&["compare", log], options].concat());
+        number(&document["axes"][0]["chi2"])
+    };
+    for (seed, [hidden, effect, formula]) in BOTH.into_iter().enumerate() {
+        let (seed, log) = (seed.to_string(), format!("{seed}.npy"));
+        let more = ["--rate", "100", "--seed", &seed, "--output", &log];
+        let hide = if hidden.is_empty() {
+            &[][..]
+        } else {
+            &["--effect", hidden]
+        };
+        output(
+            folder.path(),
+            &[&["simulate"], gyro.as_flattened(), &more, hide].concat(),
+        );
+        let name = effect.split(':').next().unwrap();
+        let replaces = CATALOGUE.iter().find(|one| one.name() == name).unwrap();
+        let replaced = replaces.replaces().map(|one| one.name());
+        let is_term = hidden.is_empty();
+        let without = replaced.or(is_term.then_some(name));
+        let without = without.map_or(vec![], |name| vec!["--without", name]);
+        let in_rust = match is_term {
+            true => chi2(&log, &[]),
+            false => chi2(&log, &["--with", effect]),
+        };
+        let by_formula = chi2(&log, &[&without[..], &["--with", formula]].concat());
+        let five = chi2(&log, &[]);
+        assert!(
+            is_term || in_rust < 0.7 * five,
+            "{effect}: {five}, {in_rust}"
+        );
+        assert!(
+            (by_formula / in_rust - 1.0).abs() < 0.01,
+            "{formula}: {by_formula}, {effect}: {in_rust}"
+        );
+    }
 }
 
 #[test]

@@ -2,6 +2,7 @@
 //! the README rest on them.
 
 pub mod calibration;
+pub mod chains;
 pub mod clean;
 pub mod coefficients;
 pub mod confusion;

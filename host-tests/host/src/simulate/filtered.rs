@@ -55,7 +55,7 @@ pub(super) struct Section {
 }
 
 impl Section {
-    fn new(b: [f64; 3], a: [f64; 2]) -> Self {
+    pub(super) fn new(b: [f64; 3], a: [f64; 2]) -> Self {
         Self {
             b,
             a,
@@ -95,7 +95,7 @@ pub(super) fn sections(effect: &dyn Effect, shape: &SampledShape) -> Option<Vec<
 }
 
 /// A Butterworth low pass by the bilinear transform, with a cut-off at this angle from sample to sample.
-fn butterworth(angle: f64, poles: f64) -> Vec<Section> {
+pub(super) fn butterworth(angle: f64, poles: f64) -> Vec<Section> {
     // The analogue sections are 1/(s² + 2ds + 1) and 1/(s + 1), with s = (1 − B)/(1 + B)/w for a delay B of one sample.
     let w = (0.5 * angle).tan();
     let pair = |k: u32| {

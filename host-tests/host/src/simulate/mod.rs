@@ -1,5 +1,6 @@
 //! Simulates gyros whose noise has known coefficients.
 
+mod chain;
 mod deterministic;
 mod filtered;
 mod flicker;
@@ -17,6 +18,7 @@ mod swept;
 mod thermal;
 mod two_levels;
 
+pub use chain::Chain;
 pub use flicker::band_limited_flicker;
 pub use hidden::Hidden;
 pub use preset::{CUSTOMARY, Preset};

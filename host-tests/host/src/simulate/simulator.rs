@@ -1,6 +1,6 @@
 //! A gyro at rest, composed of sources of noise.
 
-use super::{Coefficients, Hidden, Random, Source, ieee_952, smoothed::Smoothed};
+use super::{Chain, Coefficients, Hidden, Random, Source, ieee_952, smoothed::Smoothed};
 use allanite::effect::BiasInstability;
 use rand::SeedableRng;
 
@@ -65,6 +65,25 @@ impl Simulator {
             let source = effect.source(1.0 / rate_hz, sweep_s, &mut simulator.random);
             simulator.sources.push(source);
         }
+        simulator
+    }
+
+    /// A gyro whose white noise goes through the filters of a sensor. The slower noise passes them as it is.
+    pub fn behind(
+        coefficients: Coefficients,
+        chain: &Chain,
+        hidden: &[Hidden],
+        (rate_hz, sweep_s): (f64, f64),
+        seed: u64,
+    ) -> Self {
+        let white = coefficients.angle_random_walk;
+        let slow = Coefficients {
+            angle_random_walk: 0.0,
+            ..coefficients
+        };
+        let mut simulator = Self::with_sweep(slow, hidden, rate_hz, sweep_s, seed);
+        let source = chain.source(white, rate_hz, &mut simulator.random);
+        simulator.sources.push(Box::new(source));
         simulator
     }
 }

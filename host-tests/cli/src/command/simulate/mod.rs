@@ -6,7 +6,7 @@ use crate::command::{
     examples,
     output::{file::OutputFile, progress},
 };
-use allanite_host::simulate::{Coefficients, Preset, Simulator};
+use allanite_host::simulate::{Chain, Coefficients, Hidden, Preset, Simulator};
 use allanite_log::{
     failure::{Failure, Place, brief, quoted},
     npy_header::{Header, Kind, sidecar},
@@ -61,6 +61,11 @@ pub(super) struct Arguments {
     rate_ramp: Option<f64>,
     #[command(flatten)]
     hidden: HiddenArguments,
+    /// The filters that the white noise goes through, at a multiple of the rate, as in a sensor and its driver:
+    /// `butterworth:poles=2,cutoff_hz=42 | every:samples=8`, of the stages butterworth, pt, notch, average, cic, fir, ema,
+    /// median and every
+    #[arg(long, value_name = "STAGE | STAGE …")]
+    chain: Option<String>,
     /// Samples per second
     #[arg(
         long,
@@ -158,6 +163,7 @@ fn path_is_kept(path: &Path) -> bool {
 struct SimulatedRecord {
     coefficients: Coefficients,
     effects: HiddenEffects,
+    chain: Option<Chain>,
     /// The effects as the options give them.
     effects_text: String,
     rate_hz: f64,
@@ -202,11 +208,23 @@ impl SimulatedRecord {
         let coefficients = coefficients(arguments)?;
         let effects = arguments.hidden.effects(coefficients)?;
         effects.check_widths(arguments.rate)?;
-        let texts = arguments.hidden.texts();
+        let chain = arguments.chain.as_deref().map(Chain::parse).transpose()?;
+        if chain.is_some() && effects.hidden.iter().any(Hidden::replaces_white_noise) {
+            return Err(Failure::option(
+                "--chain and a filter of --effect replace the same white noise",
+                "drop one of them",
+            ));
+        }
+        let texts = arguments
+            .hidden
+            .texts()
+            .map(|text| format!(" effect={text}"));
+        let chain_text = arguments.chain.iter().map(|text| format!(" chain={text}"));
         Ok(Self {
             coefficients,
             effects,
-            effects_text: texts.map(|text| format!(" effect={text}")).collect(),
+            chain,
+            effects_text: texts.chain(chain_text).collect(),
             rate_hz: arguments.rate,
             samples: samples as u64,
             seed: arguments.seed,
@@ -224,7 +242,11 @@ impl SimulatedRecord {
             let seed = self.seed.wrapping_add(axis.wrapping_mul(GOLDEN));
             let sweep_s = self.samples as f64 / self.rate_hz;
             let hidden = &self.effects.hidden;
-            Simulator::with_sweep(self.coefficients, hidden, self.rate_hz, sweep_s, seed)
+            let (c, rate_hz) = (self.coefficients, self.rate_hz);
+            match &self.chain {
+                Some(chain) => Simulator::behind(c, chain, hidden, (rate_hz, sweep_s), seed),
+                None => Simulator::with_sweep(c, hidden, rate_hz, sweep_s, seed),
+            }
         };
         (0..self.axes as u64).map(axis).collect()
     }

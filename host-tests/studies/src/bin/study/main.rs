@@ -1,6 +1,7 @@
 //! The studies that the README's figures rest on: `cargo xtask study NAME`.
 
 mod calibration;
+mod chains;
 mod clean;
 mod coefficients;
 mod confusion;
@@ -158,6 +159,12 @@ enum Study {
     Smallest {
         /// Number of records per effect
         #[arg(long, default_value_t = 100)]
+        records: u64,
+    },
+    /// Count what is said of white noise behind filters that run at a multiple of the rate of the log
+    Chains {
+        /// Number of records per chain
+        #[arg(long, default_value_t = 60)]
         records: u64,
     },
     /// Count what is said of noise that the catalogue does not have, or has only nearly
@@ -439,6 +446,7 @@ fn main() -> Result<()> {
         } => limits::print(records, seed, factor),
         Study::Rounding { records, seed } => rounding::print(records, seed),
         Study::Smallest { records } => smallest::print(records),
+        Study::Chains { records } => chains::print(records),
         Study::Strange { records } => strange::print(records),
         Study::Detection {
             records,

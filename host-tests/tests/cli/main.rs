@@ -24,6 +24,7 @@ const INVALID: Verdict = Verdict::Invalid(Reason::Spiked {
 mod attributes;
 mod bad_input;
 mod certify;
+mod chain;
 mod command_line;
 mod compare;
 mod curve_file;

@@ -15,6 +15,8 @@ mod diagnosis;
 mod explore;
 #[path = "../fuzz/src/file.rs"]
 mod file;
+#[path = "../fuzz/src/formula.rs"]
+mod formula;
 #[path = "../fuzz/src/sensor.rs"]
 mod sensor;
 #[path = "../fuzz/src/spectrum.rs"]
@@ -65,6 +67,11 @@ fn accumulators_follow_the_definition() {
 #[test]
 fn axes_follow_the_description_of_the_gate() {
     replay("axis", 5, axis::check);
+}
+
+#[test]
+fn formulas_are_refused_or_written_back() {
+    replay("formula", 200, formula::check);
 }
 
 /// The library for C is compiled in single precision, unlike this test.

@@ -18,6 +18,8 @@ pub mod explore;
 #[cfg(feature = "tools")]
 pub mod file;
 #[cfg(feature = "tools")]
+pub mod formula;
+#[cfg(feature = "tools")]
 pub mod sensor;
 #[cfg(feature = "tools")]
 pub mod spectrum;

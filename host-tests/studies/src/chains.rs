@@ -7,9 +7,6 @@ use allanite_host::simulate::{Chain, Preset, Random, Simulator};
 use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
 
-/// The number of samples of a record, which is 22 minutes long.
-const SAMPLES: usize = 1 << 17;
-
 /// A kind of chains.
 #[derive(Clone, Copy)]
 pub struct Kind {
@@ -156,17 +153,17 @@ fn drawn(kind: Kind, seed: u64) -> (Chain, f64) {
     (chain, density.sqrt())
 }
 
-/// Diagnoses records of a kind, of mems and fog in turn.
-pub fn study(kind: Kind, records: u64) -> Tally {
+/// Diagnoses records of a kind with so many samples, of mems and fog in turn.
+pub fn study(kind: Kind, records: u64, samples: usize) -> Tally {
     let each = |seed: u64| {
         let preset = [Preset::Mems, Preset::Fog][usize::from(seed % 2 == 1)];
         let base = preset.coefficients();
         let (chain, passed) = drawn(kind, seed);
-        let once = (RATE_HZ, SAMPLES as f64 / RATE_HZ);
+        let once = (RATE_HZ, samples as f64 / RATE_HZ);
         let rates = Simulator::behind(base, &chain, &[], once, seed);
         let quantum = quantum(base, RATE_HZ);
         let counts: Vec<i32> = rates
-            .take(SAMPLES)
+            .take(samples)
             .map(|rate| (rate / quantum).round() as i32)
             .collect();
         let mut sums = Sums::new();

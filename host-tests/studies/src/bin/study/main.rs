@@ -166,6 +166,9 @@ enum Study {
         /// Number of records per chain
         #[arg(long, default_value_t = 60)]
         records: u64,
+        /// Samples of a record, as a power of two
+        #[arg(long, default_value_t = 17, value_parser = clap::value_parser!(u32).range(10..=24))]
+        octaves: u32,
     },
     /// Count what is said of noise that the catalogue does not have, or has only nearly
     Strange {
@@ -446,7 +449,7 @@ fn main() -> Result<()> {
         } => limits::print(records, seed, factor),
         Study::Rounding { records, seed } => rounding::print(records, seed),
         Study::Smallest { records } => smallest::print(records),
-        Study::Chains { records } => chains::print(records),
+        Study::Chains { records, octaves } => chains::print(records, octaves),
         Study::Strange { records } => strange::print(records),
         Study::Detection {
             records,

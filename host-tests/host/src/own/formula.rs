@@ -1,5 +1,6 @@
 //! Formulas of one variable with parameters: `1/(1 + (f/corner_hz)^2)`.
 
+use super::Refusal;
 use allanite_log::failure::quoted;
 use winnow::{
     ModalResult, Parser,
@@ -17,8 +18,11 @@ use winnow::{
 const LONGEST: usize = 4000;
 const DEEPEST: usize = 60;
 
+/// A function of one number.
+type Function = fn(f64) -> f64;
+
 /// The functions of one number.
-const FUNCTIONS: [(&str, fn(f64) -> f64); 15] = [
+const FUNCTIONS: [(&str, Function); 15] = [
     ("abs", f64::abs),
     ("acos", f64::acos),
     ("asin", f64::asin),
@@ -80,7 +84,7 @@ impl Formula {
         text: &str,
         variable: &str,
         parameters: &mut Vec<String>,
-    ) -> Result<Self, (String, String)> {
+    ) -> Result<Self, Refusal> {
         if text.len() > LONGEST || depth(text) > DEEPEST {
             return Err((
                 "the formula is too long, or too deep".into(),
@@ -197,7 +201,7 @@ fn call<'a>(input: &mut Input<'a>) -> ModalResult<Read<'a>> {
 }
 
 /// What is wrong at a place of the text.
-fn misread(text: &str, at: usize) -> (String, String) {
+fn misread(text: &str, at: usize) -> Refusal {
     let rest = text.get(at..).unwrap_or_default().trim_start();
     let before = text.get(..at).unwrap_or_default().trim_end();
     let what = match rest.chars().next() {
@@ -234,11 +238,7 @@ fn misread(text: &str, at: usize) -> (String, String) {
 
 impl Node {
     /// Looks names up, and computes what has no variable.
-    fn of(
-        read: Read<'_>,
-        variable: &str,
-        parameters: &mut Vec<String>,
-    ) -> Result<Self, (String, String)> {
+    fn of(read: Read<'_>, variable: &str, parameters: &mut Vec<String>) -> Result<Self, Refusal> {
         let node = match read {
             Read::Number(number) => Self::Number(number),
             Read::Name("pi" | "π") => Self::Number(std::f64::consts::PI),
@@ -288,7 +288,7 @@ impl Node {
         })
     }
 
-    fn call(name: &str, mut arguments: Vec<Self>) -> Result<Self, (String, String)> {
+    fn call(name: &str, mut arguments: Vec<Self>) -> Result<Self, Refusal> {
         let count = arguments.len();
         let takes = |what: &str| {
             Err((
@@ -320,7 +320,7 @@ impl Node {
         }
     }
 
-    fn points(arguments: Vec<Self>) -> Result<Self, (String, String)> {
+    fn points(arguments: Vec<Self>) -> Result<Self, Refusal> {
         let mut arguments = arguments.into_iter();
         let at = arguments.next().unwrap_or(Self::Number(0.0));
         let numbers: Option<Vec<f64>> = arguments
@@ -399,7 +399,7 @@ impl Points {
     ///
     /// # Errors
     /// When there are fewer than two, or they do not ascend.
-    pub(super) fn new(points: Vec<[f64; 2]>) -> Result<Self, (String, String)> {
+    pub(super) fn new(points: Vec<[f64; 2]>) -> Result<Self, Refusal> {
         if points.len() < 2 {
             return Err((
                 "there are fewer than two points".into(),

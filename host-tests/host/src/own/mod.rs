@@ -38,6 +38,12 @@ const STEEPEST: f64 = 7.92;
 /// Shapes whose covariances are kept. A search goes from shape to shape, and asks of each for many lags.
 const KEPT: usize = 16;
 
+/// What is wrong with a text, and what to write instead.
+type Refusal = (String, String);
+
+/// The name of an effect, and the values of its parameters by their names.
+type Values<'a> = (String, Vec<(&'a str, Value)>);
+
 /// What a formula is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
@@ -177,7 +183,7 @@ impl Given {
                 "write density: … or covariance: …",
             ));
         };
-        let fail = |(what, remedy): (String, String)| {
+        let fail = |(what, remedy): Refusal| {
             Failure::option(format!("{option} {}: {what}", kind.name()), remedy)
         };
         let mut parts = rest.split(';');
@@ -222,9 +228,7 @@ impl Given {
 }
 
 /// The name of the effect and the values of its parameters, which follow the formula.
-fn values<'a>(
-    parts: impl Iterator<Item = &'a str>,
-) -> Result<(String, Vec<(&'a str, Value)>), (String, String)> {
+fn values<'a>(parts: impl Iterator<Item = &'a str>) -> Result<Values<'a>, Refusal> {
     let mut name = NAME.to_owned();
     let mut values: Vec<(&str, Value)> = Vec::new();
     for part in parts.map(str::trim).filter(|part| !part.is_empty()) {
@@ -284,7 +288,7 @@ fn values<'a>(
 }
 
 /// The values in the order in which the formula has its parameters.
-fn in_order(names: &[String], values: &[(&str, Value)]) -> Result<Vec<Value>, (String, String)> {
+fn in_order(names: &[String], values: &[(&str, Value)]) -> Result<Vec<Value>, Refusal> {
     if let Some((name, _)) = values
         .iter()
         .find(|(name, _)| !names.iter().any(|own| own == name))
@@ -336,7 +340,7 @@ impl FormulaEffect {
         text: &str,
         (name, names): (&str, &[String]),
         values: &[Value],
-    ) -> Result<&'static Self, (String, String)> {
+    ) -> Result<&'static Self, Refusal> {
         let ranges: Vec<[f64; 2]> = values
             .iter()
             .map(|value| match value {
@@ -411,7 +415,7 @@ impl FormulaEffect {
 
     /// Whether a record can have the effect, at these values: its formula gives numbers, no density is below zero, and neither is
     /// a variance.
-    fn examine(&'static self, values: &[Value]) -> Result<(), (String, String)> {
+    fn examine(&'static self, values: &[Value]) -> Result<(), Refusal> {
         let ranges: Vec<[f64; 2]> = values
             .iter()
             .map(|value| match value {
@@ -449,7 +453,7 @@ impl FormulaEffect {
         }
     }
 
-    fn examine_at(&self, parameters: &[f64]) -> Result<(), (String, String)> {
+    fn examine_at(&self, parameters: &[f64]) -> Result<(), Refusal> {
         let (variable, unit) = match self.kind {
             Kind::Density => ("f", "Hz"),
             Kind::Covariance => ("t", "s"),
@@ -491,7 +495,8 @@ impl FormulaEffect {
             ));
         }
         let zero = at(0.0);
-        if !is_density && !(zero.is_finite() && zero > 0.0) {
+        let is_variance = zero.is_finite() && zero > 0.0;
+        if !(is_density || is_variance) {
             return Err((
                 format!("at t = 0{} the covariance is {zero}", shape()),
                 "give a variance above 0 there".into(),

@@ -16,7 +16,7 @@ const PER_OCTAVE: i32 = 6;
 const ERROR: f64 = 1e-4;
 const NARROWEST: f64 = 1e-5;
 /// The most cells, so that a density which no parabola follows takes memory that is bounded. Chosen by hand.
-const MOST: usize = 20_000;
+const MOST: usize = 4000;
 /// Below this share of the rate, the part of `G` that is proportional to the squared lag is left out, because it is free and
 /// would grow without a bound where the density rises faster than 1/f.
 const FREE: f64 = 1.0 / 16384.0;

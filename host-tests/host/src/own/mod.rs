@@ -88,22 +88,20 @@ pub struct FormulaEffect {
     explanation: Explanation,
     /// The ranges of the parameters in which they are looked for.
     ranges: Vec<[f64; 2]>,
-    known: Mutex<Known>,
 }
 
-/// What was computed already, by the bits of the sample interval and of the parameters.
-#[derive(Default)]
-struct Known {
-    sampled: HashMap<[u64; 1 + MAX_PARAMETERS], Sampled>,
-    /// The shapes in the order in which they came.
-    order: std::collections::VecDeque<[u64; 1 + MAX_PARAMETERS]>,
-}
+/// An effect in a shape, by the address of its description, and by the bits of the sample interval and of the parameters.
+type Key = (usize, [u64; 1 + MAX_PARAMETERS]);
 
 /// A shape, sampled, and its covariances by the bits of the lag.
 struct Sampled {
+    key: Key,
     process: Process,
     lags: HashMap<u64, f64>,
 }
+
+/// The last shapes of all effects, in the order in which they came, so that memory stays bounded however many formulas there are.
+static SAMPLED: Mutex<Vec<Sampled>> = Mutex::new(Vec::new());
 
 enum Process {
     Density(Density),
@@ -407,7 +405,6 @@ impl FormulaEffect {
                 check: "what the formula follows from: change that, and see whether the parameters move",
             },
             ranges,
-            known: Mutex::default(),
         }));
         made.push(effect);
         Ok(effect)
@@ -584,21 +581,24 @@ impl Effect for FormulaEffect {
     fn kernel(&self, lag: f64, shape: &SampledShape) -> f64 {
         let parameters = shape.parameters;
         let [a, b, c] = parameters.map(f64::to_bits);
-        let key = [shape.interval_s.to_bits(), a, b, c];
-        let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
-        let Known { sampled, order } = &mut *known;
-        if !sampled.contains_key(&key) {
-            if order.len() >= KEPT
-                && let Some(oldest) = order.pop_front()
-            {
-                sampled.remove(&oldest);
-            }
-            order.push_back(key);
-        }
-        let sampled = sampled.entry(key).or_insert_with(|| Sampled {
-            process: self.process(parameters, shape.interval_s),
-            lags: HashMap::new(),
-        });
+        let place = std::ptr::from_ref(self.description).addr();
+        let key = (place, [shape.interval_s.to_bits(), a, b, c]);
+        let mut all = SAMPLED.lock().unwrap_or_else(PoisonError::into_inner);
+        let at = all
+            .iter()
+            .position(|one| one.key == key)
+            .unwrap_or_else(|| {
+                if all.len() >= KEPT {
+                    all.remove(0);
+                }
+                all.push(Sampled {
+                    key,
+                    process: self.process(parameters, shape.interval_s),
+                    lags: HashMap::new(),
+                });
+                all.len() - 1
+            });
+        let sampled = &mut all[at];
         if let Some(&value) = sampled.lags.get(&lag.to_bits()) {
             return value;
         }

@@ -1,6 +1,6 @@
 //! Formulas of one variable with parameters: `1/(1 + (f/corner_hz)^2)`.
 
-use super::Refusal;
+use super::refusal::Refusal;
 use allanite_log::failure::quoted;
 use winnow::{
     ModalResult, Parser,

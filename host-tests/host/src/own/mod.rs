@@ -4,6 +4,7 @@ mod covariance;
 mod density;
 mod file;
 mod formula;
+mod refusal;
 #[cfg(test)]
 mod tests;
 
@@ -18,6 +19,7 @@ use allanite_log::failure::{Failure, quoted};
 use covariance::Covariance;
 use density::Density;
 use formula::Formula;
+use refusal::Refusal;
 use std::{
     collections::HashMap,
     sync::{Mutex, PoisonError},
@@ -37,9 +39,6 @@ const LOWEST_HZ: f64 = 1e-7;
 const STEEPEST: f64 = 7.92;
 /// Shapes whose covariances are kept. A search goes from shape to shape, and asks of each for many lags.
 const KEPT: usize = 16;
-
-/// What is wrong with a text, and what to write instead.
-type Refusal = (String, String);
 
 /// The name of an effect, and the values of its parameters by their names.
 type Values<'a> = (String, Vec<(&'a str, Value)>);

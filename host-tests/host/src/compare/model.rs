@@ -4,10 +4,8 @@ use crate::{
     effect_argument::{EffectArgument, Shape},
     known_filter, own,
 };
-use allanite::{Model, Term, effect::Effect};
+use allanite::{Model, Term, effect::Effect, model::MAX_EFFECTS};
 use allanite_log::failure::{Failure, quoted};
-
-const TOO_MANY: &str = "the model would have too many effects";
 
 /// Effects to add and terms to leave out, as texts of options.
 #[derive(Clone, Debug, Default)]
@@ -63,6 +61,10 @@ impl ModelChoice {
     }
 }
 
+fn too_many() -> String {
+    format!("the model would have more than {MAX_EFFECTS} effects")
+}
+
 /// Adds an effect of the catalogue to a model.
 fn put(model: &mut Model, text: &str) -> Result<(), Failure> {
     let mut argument = EffectArgument::parse("--with", text)?;
@@ -83,7 +85,7 @@ fn put(model: &mut Model, text: &str) -> Result<(), Failure> {
         let what = format!("{} is fitted, not given", effect.coefficient());
         return Err(argument.failure(what, "give only the shape parameters"));
     }
-    let full = |_| argument.failure(TOO_MANY, "leave some out with --without");
+    let full = |_| argument.failure(too_many(), "leave some out with --without");
     model.put(term).map_err(full)?;
     argument.finish()
 }
@@ -111,5 +113,5 @@ fn put_own(model: &mut Model, text: &str) -> Result<(), Failure> {
     };
     model
         .put(term)
-        .map_err(|_| fail(TOO_MANY, "leave some out with --without"))
+        .map_err(|_| fail(&too_many(), "leave some out with --without"))
 }

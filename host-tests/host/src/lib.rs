@@ -13,6 +13,7 @@ pub mod effect_argument;
 pub mod equivalent;
 pub mod event_json;
 pub mod fit;
+pub mod freeform;
 pub mod interface;
 pub mod judgement;
 pub mod known_filter;

@@ -3,7 +3,10 @@
 
 use super::{RATE_HZ, measured::Sums, quantum, said::Said};
 use allanite::{Scale, effect::CATALOGUE};
-use allanite_host::simulate::{Chain, Preset, Random, Simulator};
+use allanite_host::{
+    freeform,
+    simulate::{Chain, Preset, Random, Simulator},
+};
 use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
 
@@ -138,6 +141,8 @@ pub struct Tally {
     pub covered: usize,
     /// N is more than 10 % off.
     pub off: usize,
+    /// The filter is none of the catalogue.
+    pub freeform: usize,
     /// What was said where it is more than one filter, or something else.
     pub words: Vec<String>,
 }
@@ -153,8 +158,9 @@ fn drawn(kind: Kind, seed: u64) -> (Chain, f64) {
     (chain, density.sqrt())
 }
 
-/// Diagnoses records of a kind with so many samples, of mems and fog in turn.
-pub fn study(kind: Kind, records: u64, samples: usize) -> Tally {
+/// Diagnoses records of a kind with so many samples, of mems and fog in turn: as the command line does, or with the catalogue alone,
+/// as a device.
+pub fn study(kind: Kind, records: u64, samples: usize, as_device: bool) -> Tally {
     let each = |seed: u64| {
         let preset = [Preset::Mems, Preset::Fog][usize::from(seed % 2 == 1)];
         let base = preset.coefficients();
@@ -168,16 +174,21 @@ pub fn study(kind: Kind, records: u64, samples: usize) -> Tally {
             .collect();
         let mut sums = Sums::new();
         sums.push_slice(&counts);
-        let said = Said::of(&sums.measured(Scale::new(quantum, RATE_HZ).expect("positive")));
+        let measured = sums.measured(Scale::new(quantum, RATE_HZ).expect("positive"));
+        let said = match as_device {
+            true => Said::of(&measured),
+            false => Said::freely(&measured),
+        };
         (passed * base.angle_random_walk, said)
     };
     let said: Vec<(f64, Said)> = (0..records).into_par_iter().map(each).collect();
     let is_filter = |name: &str| {
         let mut catalogue = CATALOGUE.iter().filter(|effect| effect.name() == name);
-        catalogue.any(|effect| {
-            let replaced = effect.replaces().map(|replaced| replaced.name());
-            replaced == Some("angle_random_walk") || effect.passes_all()
-        })
+        name == freeform::NAME
+            || catalogue.any(|effect| {
+                let replaced = effect.replaces().map(|replaced| replaced.name());
+                replaced == Some("angle_random_walk") || effect.passes_all()
+            })
     };
     let is_none = kind.chain.starts_with("every");
     let mut tally = Tally::default();
@@ -190,6 +201,8 @@ pub fn study(kind: Kind, records: u64, samples: usize) -> Tally {
             .count();
         let alone = said.named.len() == filters && filters == usize::from(!is_none);
         tally.alone += usize::from(alone);
+        let is_freeform = |(name, _): &(&str, Vec<&str>)| *name == freeform::NAME;
+        tally.freeform += usize::from(said.named.iter().any(is_freeform));
         tally.beside += usize::from(said.named.len() > filters);
         tally.unexplained += usize::from(said.is_unexplained());
         tally.covered += usize::from(said.covers("N", truth));

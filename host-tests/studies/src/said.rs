@@ -1,14 +1,18 @@
 //! What a diagnosis says of a record, beside what is hidden in it.
 
 use super::{
+    OCTAVES,
     hidden_effect::{added, steps},
     measured::Measured,
 };
 use allanite::{
-    Coefficient,
-    diagnosis::{Options, Verdict},
+    Coefficient, Model,
+    diagnosis::{Options, Step, Verdict},
+    effect::CATALOGUE,
     fit::State,
 };
+use allanite_host::freeform::diagnose_freely;
+use allanite_log::BINS;
 
 /// Effects that are told by the same word: filters that pass the same band.
 const LOW_PASSES: [&str; 4] = ["low_pass", "digital_low_pass", "cascade", "output_low_pass"];
@@ -47,7 +51,21 @@ impl Said {
     /// Diagnoses a record.
     pub fn of(measured: &Measured) -> Self {
         let (steps, verdict) = steps(measured, Options::default());
-        let added = added(&steps);
+        Self::of_steps(&steps, verdict)
+    }
+
+    /// Diagnoses a record as the command line does, with low passes of any form.
+    pub fn freely(measured: &Measured) -> Self {
+        let model = Model::ieee_952();
+        let options = Options::default();
+        match diagnose_freely(measured.record(), &model, &CATALOGUE, options) {
+            Ok((steps, verdict)) => Self::of_steps(&steps, Some(verdict)),
+            Err(_) => Self::of_steps(&[], None),
+        }
+    }
+
+    fn of_steps(steps: &[Step<OCTAVES, BINS>], verdict: Option<Verdict>) -> Self {
+        let added = added(steps);
         let last = steps.last();
         let coefficients = last.map(|step| {
             let terms = step.model.terms().iter().zip(&step.fit.coefficients);

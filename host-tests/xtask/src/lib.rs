@@ -47,6 +47,10 @@ enum Task {
         /// oldest compiler, injected faults, hostile inputs, fuzzing, Miri, studies and fleets.
         #[arg(long)]
         all: bool,
+        /// Leave out the stages before this one, which a run that was interrupted has passed: a part of the name that stands
+        /// behind `==`.
+        #[arg(long, value_name = "STAGE")]
+        from: Option<String>,
     },
     /// Run a study behind the figures of the pages: `cargo xtask study help` lists them.
     Study {
@@ -201,7 +205,7 @@ impl CommandLine {
     pub fn run(self) -> Result<()> {
         match self.task {
             Task::Setup => setup::run(),
-            Task::Test { all } => test::run(all),
+            Task::Test { all, from } => test::run(all, from),
             Task::Study { arguments } => study::run(&arguments),
             Task::Watch { program, arguments } => watch::run_watch(program.as_deref(), &arguments),
             Task::Soak {

@@ -11,6 +11,7 @@ use crate::{
     dependence::candidates::{Candidate as Series, Candidates},
     diagnosis::{diagnose, go_on},
     disturbance::invalid,
+    freeform::{Freeform, alternative as alternative_filter},
     known_filter::{self, known_filter},
     rounding,
     stationarity::Stationarity,
@@ -40,6 +41,8 @@ pub struct Diagnosed {
     pub verdict: Verdict,
     /// What fits better than the filter that was given; `None` if that fits or none was given.
     pub better: Option<Better>,
+    /// A low pass of another form that explains the record without some of the effects; `None` if there is none.
+    pub freeform: Option<Freeform>,
     /// The sizes of effects that the record would have shown. Empty unless the last model is adequate.
     pub limits: Vec<Limit>,
     /// What happened during the record.
@@ -63,7 +66,8 @@ pub struct Diagnosed {
 }
 
 impl Diagnosed {
-    /// Diagnoses an axis, from this model on, and finds out which effects the record would have shown.
+    /// Diagnoses an axis, from this model on, and finds out which effects the record would have shown, and whether a low pass of any
+    /// form explains it better.
     pub fn new(
         axis: AxisCurve,
         evidence: Evidence,
@@ -72,10 +76,11 @@ impl Diagnosed {
     ) -> Result<Self, Error> {
         let mut diagnosed = Self::without_limits(axis, evidence, model, scope)?;
         diagnosed.limits = diagnosed.detection_limits()?;
+        diagnosed.freeform = diagnosed.freeform()?;
         Ok(diagnosed)
     }
 
-    /// As [`new`](Self::new), without the limits of detection, which take longer than the rest.
+    /// As [`new`](Self::new), without the limits of detection and the low pass of any form, which take longer than the rest.
     pub fn without_limits(
         axis: AxisCurve,
         mut evidence: Evidence,
@@ -121,6 +126,7 @@ impl Diagnosed {
             steps,
             verdict,
             better,
+            freeform: None,
             limits: Vec::new(),
             stationarity: Stationarity::default(),
             lines: Vec::new(),
@@ -181,6 +187,31 @@ impl Diagnosed {
                 .run(|limit| limits.push(limit), &mut go_on);
         }
         Ok(limits)
+    }
+
+    /// The low pass of another form that explains the record with fewer effects, or better.
+    fn freeform(&self) -> Result<Option<Freeform>, Error> {
+        let Some((first, last)) = self.ends().filter(|_| self.better.is_none()) else {
+            return Ok(None);
+        };
+        let (curve, spectrum, course) = (
+            self.axis.curve()?,
+            self.axis.spectrum()?,
+            self.axis.course()?,
+        );
+        let record = Record {
+            course: course.as_ref(),
+            ..Record::new(&curve, &spectrum)
+        };
+        let found = alternative_filter(
+            record,
+            &first.model,
+            (last, self.verdict),
+            &self.scope.effects,
+            self.scope.options,
+        )?;
+        let steps = found.as_ref().and_then(|(steps, _)| steps.last());
+        Ok(steps.and_then(|with| Freeform::of(with, last)))
     }
 
     /// The sinusoids of the last model.
@@ -392,6 +423,7 @@ impl Diagnosed {
                 unit,
             ));
         }
+        notes.extend(self.freeform.iter().map(|one| one.words(self.axis.unit)));
         notes.extend(comb_notes(&self.lines, &self.combs));
         notes.extend(half_rate_notes(&self.lines, self.axis.rate_hz));
         if self.added().next().is_some() && self.verdict == Verdict::Improved {

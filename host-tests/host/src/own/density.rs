@@ -26,7 +26,7 @@ const SMALL: f64 = 0.5;
 const TERMS: usize = 6;
 
 /// Noise with a power spectral density, sampled.
-pub(super) struct Density {
+pub(crate) struct Density {
     interval_s: f64,
     /// In the order of their frequencies.
     cells: Vec<Cell>,
@@ -45,7 +45,7 @@ struct Cell {
 
 impl Density {
     /// The density `S` of a rate that is sampled, at frequencies in Hz.
-    pub(super) fn new(density: impl Fn(f64) -> f64, interval_s: f64) -> Self {
+    pub(crate) fn new(density: impl Fn(f64) -> f64, interval_s: f64) -> Self {
         let nyquist = 0.5 / interval_s;
         let a = |f: f64| {
             let sine = (PI * f * interval_s).sin();
@@ -63,6 +63,7 @@ impl Density {
                 &mut cells,
             );
         }
+        cells.retain(|cell: &Cell| cell.parabola != [0.0; 3]);
         let mut sums = vec![[0.0; TERMS]];
         for cell in &cells {
             let before = sums.last().copied().unwrap_or_default();
@@ -88,7 +89,7 @@ impl Density {
     }
 
     /// The generalised covariance at a lag in samples, in s² times the unit of the density times Hz.
-    pub(super) fn covariance(&self, lag: f64) -> f64 {
+    pub(crate) fn covariance(&self, lag: f64) -> f64 {
         let kappa = 2.0 * PI * lag * self.interval_s;
         // Cells whose phases are small come first, and their series are sums that are known.
         let first = self

@@ -13,6 +13,7 @@ mod sampled;
 mod tests;
 mod value;
 
+pub(crate) use density::Density;
 pub use effect::{FormulaEffect, find, named};
 
 use allanite::effect::MAX_PARAMETERS;

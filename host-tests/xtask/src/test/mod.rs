@@ -39,15 +39,15 @@ const EXAMINED_IMAGES: [&str; 4] = [
     "race",
 ];
 
-pub(crate) fn run(all: bool) -> Result<()> {
+pub(crate) fn run(all: bool, first: Option<String>) -> Result<()> {
     // The short run ends with the first failure; the long one shows all of them.
-    let mut stages = Stages::new(all);
+    let mut stages = Stages::new(all, first);
     stages.run("set-up", setup::run)?;
     lints::run(&mut stages, all)?;
     stages.run("the library in both precisions", programs::library)?;
     stages.run("the images for three cores", images)?;
     let mut built = Built::default();
-    stages.run("the build of the programs of the host", || {
+    stages.needed("the build of the programs of the host", || {
         built = Built::new()?;
         Ok(())
     })?;

@@ -169,6 +169,12 @@ enum Study {
         /// Samples of a record, as a power of two
         #[arg(long, default_value_t = 17, value_parser = clap::value_parser!(u32).range(10..=24))]
         octaves: u32,
+        /// With the catalogue alone, as a device
+        #[arg(long)]
+        catalogue: bool,
+        /// Only chains with this part in their names
+        #[arg(long, default_value = "")]
+        chain: String,
     },
     /// Count what is said of noise that the catalogue does not have, or has only nearly
     Strange {
@@ -449,7 +455,12 @@ fn main() -> Result<()> {
         } => limits::print(records, seed, factor),
         Study::Rounding { records, seed } => rounding::print(records, seed),
         Study::Smallest { records } => smallest::print(records),
-        Study::Chains { records, octaves } => chains::print(records, octaves),
+        Study::Chains {
+            records,
+            octaves,
+            catalogue,
+            chain,
+        } => chains::print(records, octaves, catalogue, &chain),
         Study::Strange { records } => strange::print(records),
         Study::Detection {
             records,

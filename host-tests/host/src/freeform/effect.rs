@@ -67,6 +67,12 @@ impl FreeformFilter {
         }))
     }
 
+    /// Gives back the memory of the covariances.
+    pub(super) fn rest(&self) {
+        let mut sampled = self.sampled.lock().unwrap_or_else(PoisonError::into_inner);
+        *sampled = Vec::new();
+    }
+
     /// The cut-off at which the response was fitted.
     pub(super) fn cutoff_hz(&self) -> f64 {
         self.response.cutoff * self.rate_hz

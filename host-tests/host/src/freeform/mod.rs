@@ -72,7 +72,22 @@ pub fn alternative<const K: usize, const B: usize>(
     let Some(best) = found.first() else {
         return Ok(None);
     };
-    let filter: &'static dyn Effect = FreeformFilter::leaked(best.clone(), spectrum.rate_hz());
+    let filter = FreeformFilter::leaked(best.clone(), spectrum.rate_hz());
+    let found = explained(record, model, (last, filter, &found), effects, options);
+    filter.rest();
+    found
+}
+
+/// The diagnosis by a filter, if it explains the record about as well with fewer effects, or better.
+fn explained<const K: usize, const B: usize>(
+    record: Record<'_, K, B>,
+    model: &Model,
+    (last, filter, found): (&Step<K, B>, &'static FreeformFilter, &[response::Response]),
+    effects: &[&'static dyn Effect],
+    options: Options,
+) -> Result<Option<Diagnosed<K, B>>, Error> {
+    let filter: &'static dyn Effect = filter;
+    let parameters = found.first().map_or(0, |best| best.parameters);
     // At first without what imitates a filter, and then with everything.
     let others = || {
         let others = effects.iter().copied();
@@ -89,10 +104,10 @@ pub fn alternative<const K: usize, const B: usize>(
             continue;
         };
         // The cut-off is among the parameters of both.
-        let free = best.parameters as f64 - 1.0;
+        let free = parameters as f64 - 1.0;
         let gain = improvement(last, new) - 2.0 * free;
         if gain >= needed(beside(last), beside(new), options.threshold) {
-            widen(new, &found);
+            widen(new, found);
             return Ok(Some((freely, judged)));
         }
     }

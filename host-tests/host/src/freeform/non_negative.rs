@@ -37,22 +37,20 @@ pub(super) fn solve(gram: &DMatrix<f64>, right: &DVector<f64>) -> DVector<f64> {
                 break;
             }
             // As far as no coefficient becomes negative, and those that reach zero stay there.
-            let steps = places
-                .iter()
-                .zip(&tried)
-                .filter(|(_, value)| **value <= 0.0);
-            let share = steps
-                .map(|(&place, &value)| found[place] / (found[place] - value))
-                .fold(1.0, f64::min);
-            for (&place, &value) in places.iter().zip(&tried) {
+            let reach = |place: usize, value: f64| match (value <= 0.0, found[place] > 0.0) {
+                (true, true) => found[place] / (found[place] - value),
+                (true, false) => 0.0,
+                (false, _) => 1.0,
+            };
+            let pairs = || places.iter().copied().zip(tried.iter().copied());
+            let reached: Vec<f64> = pairs().map(|(place, value)| reach(place, value)).collect();
+            let share = reached.iter().copied().fold(1.0, f64::min);
+            for ((place, value), reached) in pairs().zip(reached) {
                 found[place] += share * (value - found[place]);
-                if found[place] <= 1e-14 || (value <= 0.0 && share == 0.0) {
+                if value <= 0.0 && reached <= share {
                     found[place] = 0.0;
                     free[place] = false;
                 }
-            }
-            if places.iter().all(|&place| free[place]) {
-                return found;
             }
             if free.iter().all(|&is_free| !is_free) {
                 break;

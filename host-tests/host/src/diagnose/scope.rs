@@ -19,7 +19,7 @@ pub struct Scope {
 }
 
 /// The most axes of a file for which a low pass of any form is tried: a file of many would take too long.
-const MOST_AXES: usize = 12;
+const MOST_AXES: usize = 6;
 
 impl Default for Scope {
     fn default() -> Self {

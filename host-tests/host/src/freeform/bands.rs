@@ -17,17 +17,16 @@ const LOWEST: f64 = 0.002;
 const PER_OCTAVE: f64 = 10.0;
 const WIDEST: f64 = 1.0 / 256.0;
 
-/// What the bins of a spectrum show of a density of one in each band.
+/// Narrow bands, whose sum with the values of a density at their frequencies is that density but for straight lines between them.
 pub(super) struct Bands {
     /// The frequencies of the bands, in cycles per sample, from zero to a half.
     pub(super) frequencies: Vec<f64>,
-    /// For each band, the expected densities of the bins.
-    pub(super) shown: Vec<Vec<f64>>,
+    bands: Vec<Band>,
 }
 
 impl Bands {
-    /// The bands of a spectrum.
-    pub(super) fn of<const B: usize>(spectrum: &Spectrum<B>) -> Self {
+    /// The bands at a rate.
+    pub(super) fn new(rate_hz: f64) -> Self {
         let mut frequencies = vec![0.0, LOWEST];
         let mut at = LOWEST;
         loop {
@@ -38,34 +37,29 @@ impl Bands {
             frequencies.push(at);
         }
         frequencies.push(0.5);
-        let ends = |at: usize| {
-            let below = at.checked_sub(1).map_or(0.0, |below| frequencies[below]);
-            [
-                below,
-                frequencies[at],
-                frequencies.get(at + 1).copied().unwrap_or(0.5),
-            ]
-        };
-        let shown = (0..frequencies.len()).map(|at| {
-            let band = Band::new(ends(at), spectrum.rate_hz());
-            let shown = spectrum.expected(&band, [0.0; MAX_PARAMETERS]);
-            shown.iter().copied().collect()
+        let at = |place: Option<usize>| place.and_then(|at| frequencies.get(at)).copied();
+        let bands = (0..frequencies.len()).map(|place| {
+            let ends = [place.checked_sub(1), Some(place), Some(place + 1)];
+            Band::new(ends.map(at), rate_hz)
         });
         Self {
-            shown: shown.collect(),
+            bands: bands.collect(),
             frequencies,
         }
     }
 
-    /// Adds what the bins show of this density, whose values at the bands are given.
-    pub(super) fn add(&self, values: impl Iterator<Item = f64>, sum: &mut [f64]) {
-        for (value, shown) in values.zip(&self.shown) {
-            if value != 0.0 {
-                for (sum, shown) in sum.iter_mut().zip(shown) {
-                    *sum += value * shown;
-                }
-            }
-        }
+    /// For each band, the densities that the bins of a spectrum are expected to show of it.
+    pub(super) fn shown<const B: usize>(&self, spectrum: &Spectrum<B>) -> Vec<Vec<f64>> {
+        let shown = self.bands.iter().map(|band| {
+            let shown = spectrum.expected(band, [0.0; MAX_PARAMETERS]);
+            shown.iter().copied().collect()
+        });
+        shown.collect()
+    }
+
+    /// The generalised covariances of the bands at a lag.
+    pub(super) fn covariances(&self, lag: f64) -> Vec<f64> {
+        self.bands.iter().map(|band| band.at(lag)).collect()
     }
 }
 
@@ -76,20 +70,50 @@ struct Band {
     lags: Mutex<HashMap<u64, f64>>,
 }
 
+/// The lowest edge of the band at zero, as a power of two of half the rate. A record of 2^34 samples would see it.
+const DEEPEST: i32 = -33;
+
 impl Band {
-    fn new([low, middle, high]: [f64; 3], rate_hz: f64) -> Self {
-        let [low, middle, high] = [low, middle, high].map(|f| f * rate_hz);
-        let density = move |f: f64| {
-            let rises = (f - low) / (middle - low);
-            let falls = (high - f) / (high - middle);
-            let side = if f <= middle { rises } else { falls };
-            // At either end of all frequencies there is one side alone.
-            if side.is_finite() { side.max(0.0) } else { 1.0 }
+    /// A band between its neighbours, of which there is one alone at either end.
+    fn new(ends: [Option<f64>; 3], rate_hz: f64) -> Self {
+        let [low, middle, high] = ends.map(|end| end.map(|end| end * rate_hz));
+        let middle = middle.unwrap_or_default();
+        let density = |f: f64| match (low, high) {
+            (Some(low), _) if f <= middle => (f - low) / (middle - low),
+            (_, Some(high)) => (high - f) / (high - middle),
+            _ => 1.0,
         };
+        let lowest = match low {
+            Some(low) if low > 0.0 => low,
+            _ => 0.5 * rate_hz * f64::from(DEEPEST).exp2(),
+        };
+        // Near zero the integrand changes from octave to octave.
+        let mut edges = vec![lowest];
+        let top = high.unwrap_or(middle);
+        let mut next = lowest;
+        while next < top {
+            let after = 1.2 * next;
+            let end = if next < middle { middle.min(top) } else { top };
+            next = if end <= 1.2 * after {
+                end.min(top)
+            } else {
+                after
+            };
+            edges.push(next);
+            if next >= top {
+                break;
+            }
+        }
         Self {
-            density: Density::new(density, 1.0 / rate_hz),
+            density: Density::between(&edges, density, rate_hz.recip()),
             lags: Mutex::default(),
         }
+    }
+
+    fn at(&self, lag: f64) -> f64 {
+        let mut lags = self.lags.lock().unwrap_or_else(PoisonError::into_inner);
+        let known = lags.entry(lag.to_bits());
+        *known.or_insert_with(|| self.density.covariance(lag))
     }
 }
 
@@ -113,8 +137,6 @@ impl Effect for Band {
     }
 
     fn kernel(&self, lag: f64, _: &SampledShape) -> f64 {
-        let mut lags = self.lags.lock().unwrap_or_else(PoisonError::into_inner);
-        let known = lags.entry(lag.to_bits());
-        *known.or_insert_with(|| self.density.covariance(lag))
+        self.at(lag)
     }
 }

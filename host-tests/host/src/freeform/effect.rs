@@ -1,7 +1,6 @@
 //! White noise behind a low pass whose response was fitted to a record.
 
-use super::response::Response;
-use crate::own::Density;
+use super::{bands::Bands, response::Response};
 use allanite::{
     curve::Span,
     effect::{
@@ -10,7 +9,7 @@ use allanite::{
 };
 use std::{
     collections::HashMap,
-    sync::{Mutex, PoisonError},
+    sync::{Arc, Mutex, MutexGuard, PoisonError},
 };
 
 /// The name in studies.
@@ -19,19 +18,26 @@ pub const NAME: &str = "freeform_filter";
 /// How far the cut-off may move from where the response was fitted. Chosen by hand.
 const BEYOND: f64 = 1.5;
 
-/// Shapes whose covariances are kept.
+/// Cut-offs whose densities are kept.
 const KEPT: usize = 8;
 
 /// Angle random walk behind a filter whose response is known but for its cut-off. The coefficient is `N` in front of the filter.
 pub(super) struct FreeformFilter {
     response: Response,
     rate_hz: f64,
-    /// The covariances of the last cut-offs.
-    sampled: Mutex<Vec<Sampled>>,
+    /// What was computed so far.
+    computed: Mutex<Computed>,
 }
 
-/// The bits of a cut-off, its density, and its covariances by the bits of the lag.
-type Sampled = (u64, Density, HashMap<u64, f64>);
+/// Covariances, and what they are computed of.
+#[derive(Default)]
+struct Computed {
+    bands: Option<Arc<Bands>>,
+    /// The covariances of the bands by the bits of the lag.
+    lags: HashMap<u64, Vec<f64>>,
+    /// The last cut-offs by their bits, and the densities at the bands.
+    densities: Vec<(u64, Vec<f64>)>,
+}
 
 static DESCRIPTION: Description = Description {
     name: NAME,
@@ -59,18 +65,24 @@ static DESCRIPTION: Description = Description {
 
 impl FreeformFilter {
     /// The effect of a response, in a record of this rate. It lives as long as the program, because models refer to it.
-    pub(super) fn leaked(response: Response, rate_hz: f64) -> &'static Self {
+    pub(super) fn leaked(response: Response, bands: Arc<Bands>, rate_hz: f64) -> &'static Self {
         Box::leak(Box::new(Self {
             response,
             rate_hz,
-            sampled: Mutex::default(),
+            computed: Mutex::new(Computed {
+                bands: Some(bands),
+                ..Computed::default()
+            }),
         }))
     }
 
     /// Gives back the memory of the covariances.
     pub(super) fn rest(&self) {
-        let mut sampled = self.sampled.lock().unwrap_or_else(PoisonError::into_inner);
-        *sampled = Vec::new();
+        *self.computed() = Computed::default();
+    }
+
+    fn computed(&self) -> MutexGuard<'_, Computed> {
+        self.computed.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// The cut-off at which the response was fitted.
@@ -78,10 +90,11 @@ impl FreeformFilter {
         self.response.cutoff * self.rate_hz
     }
 
-    /// The two-sided density of a coefficient of one at a frequency in Hz.
-    fn density(&self, cutoff_hz: f64, frequency_hz: f64) -> f64 {
-        let frequency = frequency_hz * self.response.cutoff / cutoff_hz;
-        self.response.at(frequency)
+    /// The two-sided densities of a coefficient of one at the bands.
+    fn densities(&self, cutoff_hz: f64, bands: &Bands) -> Vec<f64> {
+        let scale = self.cutoff_hz() / cutoff_hz;
+        let frequencies = bands.frequencies.iter();
+        frequencies.map(|f| self.response.at(f * scale)).collect()
     }
 }
 
@@ -107,19 +120,29 @@ impl Effect for FreeformFilter {
             given if given > 0.0 => given,
             _ => self.cutoff_hz(),
         };
-        let mut all = self.sampled.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut computed = self.computed();
+        let Computed {
+            bands,
+            lags,
+            densities,
+        } = &mut *computed;
+        let bands = bands.get_or_insert_with(|| Arc::new(Bands::new(self.rate_hz)));
         let key = cutoff_hz.to_bits();
-        let at = all.iter().position(|(known, ..)| *known == key);
-        let at = at.unwrap_or_else(|| {
-            if all.len() >= KEPT {
-                all.remove(0);
+        let known = densities.iter().position(|(known, _)| *known == key);
+        let at = known.unwrap_or_else(|| {
+            if densities.len() >= KEPT {
+                densities.remove(0);
             }
-            let density = Density::new(|f| self.density(cutoff_hz, f), shape.interval_s);
-            all.push((key, density, HashMap::new()));
-            all.len() - 1
+            densities.push((key, self.densities(cutoff_hz, bands)));
+            densities.len() - 1
         });
-        let (_, density, lags) = &mut all[at];
-        let known = lags.entry(lag.to_bits());
-        *known.or_insert_with(|| density.covariance(lag))
+        let lag_key = lag.to_bits();
+        let of_bands = lags
+            .entry(lag_key)
+            .or_insert_with(|| bands.covariances(lag));
+        let pairs = densities[at].1.iter().zip(of_bands.iter());
+        pairs
+            .map(|(density, covariance)| density * covariance)
+            .sum()
     }
 }

@@ -27,7 +27,9 @@ use allanite::{
     effect::{AngleRandomWalk, Distribution, Effect},
     fit::State,
 };
+use bands::Bands;
 use effect::FreeformFilter;
+use std::sync::Arc;
 
 /// The steps of a diagnosis, and its verdict.
 pub type Diagnosed<const K: usize, const B: usize> = (Vec<Step<K, B>>, Verdict);
@@ -68,11 +70,12 @@ pub fn alternative<const K: usize, const B: usize>(
     if last.covariate.is_some() || known_filter(model).is_some() || !needs_another(verdict, last) {
         return Ok(None);
     }
-    let found = response::responses(spectrum, &last.model);
+    let bands = Arc::new(Bands::new(spectrum.rate_hz()));
+    let found = response::responses(spectrum, &last.model, bands.clone());
     let Some(best) = found.first() else {
         return Ok(None);
     };
-    let filter = FreeformFilter::leaked(best.clone(), spectrum.rate_hz());
+    let filter = FreeformFilter::leaked(best.clone(), bands, spectrum.rate_hz());
     let found = explained(record, model, (last, filter, &found), effects, options);
     filter.rest();
     found

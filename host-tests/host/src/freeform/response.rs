@@ -11,6 +11,7 @@ use allanite::{
     spectrum::Spectrum,
 };
 use nalgebra::{DMatrix, DVector};
+use std::sync::Arc;
 
 /// The corners that are tried, in cycles per sample, and their number.
 const LOWEST_CORNER: f64 = 0.012;
@@ -60,12 +61,16 @@ impl Response {
 }
 
 /// The best responses, the best first, with those that are as good. Empty where the spectrum has too few bins.
-pub(super) fn responses<const B: usize>(spectrum: &Spectrum<B>, model: &Model) -> Vec<Response> {
+pub(super) fn responses<const B: usize>(
+    spectrum: &Spectrum<B>,
+    model: &Model,
+    bands: Arc<Bands>,
+) -> Vec<Response> {
     let bins = spectrum.bins();
     if bins.len() < 28 {
         return Vec::new();
     }
-    let densities = Densities::new(spectrum, model);
+    let densities = Densities::new(spectrum, model, bands);
     let mut tried: Vec<Response> = Vec::new();
     for family in FAMILIES {
         let corners = (0..CORNERS).map(|at| {
@@ -88,17 +93,19 @@ pub(super) fn responses<const B: usize>(spectrum: &Spectrum<B>, model: &Model) -
 /// The densities of a record, and what adds to the white noise.
 struct Densities {
     measured: Vec<f64>,
-    /// Twice the shape of the gamma distribution of each density.
+    /// The shape of the gamma distribution of each density.
     weight: Vec<f64>,
     /// What adds to the white noise.
     others: Vec<Vec<f64>>,
     /// The measured densities, smoothed.
     smooth: Vec<f64>,
-    bands: Bands,
+    bands: Arc<Bands>,
+    /// For each band, what the bins are expected to show of it.
+    shown: Vec<Vec<f64>>,
 }
 
 impl Densities {
-    fn new<const B: usize>(spectrum: &Spectrum<B>, model: &Model) -> Self {
+    fn new<const B: usize>(spectrum: &Spectrum<B>, model: &Model, bands: Arc<Bands>) -> Self {
         let bins = spectrum.bins();
         let measured: Vec<f64> = bins.iter().map(|bin| bin.density.max(1e-300)).collect();
         let weight = bins.iter().map(|bin| {
@@ -136,7 +143,8 @@ impl Densities {
             weight: weight.collect(),
             others: others.collect(),
             smooth,
-            bands: Bands::of(spectrum),
+            shown: bands.shown(spectrum),
+            bands,
             measured,
         }
     }
@@ -154,7 +162,11 @@ impl Densities {
         }
         let shown = values.into_iter().map(|values| {
             let mut shown = vec![0.0; self.measured.len()];
-            self.bands.add(values.into_iter(), &mut shown);
+            for (value, of_band) in values.iter().zip(&self.shown) {
+                if *value != 0.0 {
+                    add(*value, of_band, &mut shown);
+                }
+            }
             shown
         });
         self.others.iter().cloned().chain(shown).collect()
@@ -212,9 +224,7 @@ impl Densities {
             let squares: Vec<f64> = found.iter().zip(&scales).map(|(x, s)| x * s).collect();
             model = vec![0.0; self.measured.len()];
             for (square, column) in squares.iter().zip(columns) {
-                for (model, value) in model.iter_mut().zip(column) {
-                    *model += square * value;
-                }
+                add(*square, column, &mut model);
             }
             for (model, measured) in model.iter_mut().zip(&self.measured) {
                 *model = model.max(1e-6 * measured);
@@ -316,6 +326,13 @@ impl Densities {
                 scores = [scores[1], at(inner[1])];
             }
         }
+    }
+}
+
+/// Adds a multiple of a column to a sum.
+fn add(factor: f64, column: &[f64], sum: &mut [f64]) {
+    for (sum, value) in sum.iter_mut().zip(column) {
+        *sum += factor * value;
     }
 }
 

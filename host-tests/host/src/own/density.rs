@@ -47,15 +47,20 @@ impl Density {
     /// The density `S` of a rate that is sampled, at frequencies in Hz.
     pub(crate) fn new(density: impl Fn(f64) -> f64, interval_s: f64) -> Self {
         let nyquist = 0.5 / interval_s;
+        let count = (-1 - LOWEST) * PER_OCTAVE;
+        let edge = |at: i32| nyquist * 2.0_f64.powf(f64::from(at - count) / f64::from(PER_OCTAVE));
+        let edges: Vec<f64> = (0..=count).map(edge).collect();
+        Self::between(&edges, density, interval_s)
+    }
+
+    /// The density of a rate that is sampled, smooth between the edges and zero elsewhere.
+    pub(crate) fn between(edges: &[f64], density: impl Fn(f64) -> f64, interval_s: f64) -> Self {
         let a = |f: f64| {
             let sine = (PI * f * interval_s).sin();
             density(f) / (sine * sine)
         };
         let mut cells = Vec::new();
-        let count = (-1 - LOWEST) * PER_OCTAVE;
-        let edge = |at: i32| nyquist * 2.0_f64.powf(f64::from(at - count) / f64::from(PER_OCTAVE));
-        for at in 0..count {
-            let (low, high) = (edge(at), edge(at + 1));
+        for (&low, &high) in edges.iter().zip(&edges[1..]) {
             split(
                 &a,
                 [low, high],
@@ -63,7 +68,6 @@ impl Density {
                 &mut cells,
             );
         }
-        cells.retain(|cell: &Cell| cell.parabola != [0.0; 3]);
         let mut sums = vec![[0.0; TERMS]];
         for cell in &cells {
             let before = sums.last().copied().unwrap_or_default();

@@ -191,10 +191,7 @@ impl Diagnosed {
 
     /// The low pass of another form that explains the record with fewer effects, or better.
     fn freeform(&self) -> Result<Option<Freeform>, Error> {
-        let Some((first, last)) = self
-            .ends()
-            .filter(|_| self.scope.any_filter && self.better.is_none())
-        else {
+        let Some((first, last)) = self.ends().filter(|_| self.better.is_none()) else {
             return Ok(None);
         };
         let (curve, spectrum, course) = (

@@ -14,33 +14,18 @@ pub struct Scope {
     pub options: Options,
     /// The catalogue, and effects of the user's own.
     pub effects: Vec<&'static dyn Effect>,
-    /// Whether a low pass of any form is tried.
-    pub any_filter: bool,
 }
-
-/// The most axes of a file for which a low pass of any form is tried: a file of many would take too long.
-const MOST_AXES: usize = 6;
 
 impl Default for Scope {
     fn default() -> Self {
         Self {
             options: Options::default(),
             effects: CATALOGUE.to_vec(),
-            any_filter: true,
         }
     }
 }
 
 impl Scope {
-    /// The scope for a file with so many axes.
-    #[must_use]
-    pub fn for_axes(self, axes: usize) -> Self {
-        Self {
-            any_filter: axes <= MOST_AXES,
-            ..self
-        }
-    }
-
     /// The catalogue with effects that formulas describe, of which at most so many are added.
     ///
     /// # Errors

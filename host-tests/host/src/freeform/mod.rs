@@ -2,7 +2,7 @@
 //!
 //! Where the filters of the catalogue do not explain a record alone, a wrong kernel passes for a second effect, a resonance near
 //! half the rate for example, and takes N with it. The response of the filter is then fitted to the record's densities, and the
-//! record is diagnosed once more with a filter of this response in the place of those of the catalogue.
+//! record is diagnosed once more with a filter of this response instead of those of the catalogue.
 //!
 //! The response is a sum of columns with coefficients that are not negative: poles with free zeros, or a curve that only falls from
 //! knot to knot. Only one of the columns behind poles is not zero at frequency zero, so that N² is one coefficient.

@@ -49,7 +49,7 @@ impl Diagnosis {
         goes_on: &mut dyn FnMut(usize) -> bool,
     ) -> Result<Self, Failure> {
         let model = known_filter::model(search.filter.as_deref())?;
-        let scope = Scope::new(search.max_effects, &search.own)?.for_axes(axes.len());
+        let scope = Scope::new(search.max_effects, &search.own)?;
         let diagnose = |(number, (axis, evidence)): (usize, (AxisCurve, Evidence))| {
             if !goes_on(number) {
                 return Err(Failure::interrupted());

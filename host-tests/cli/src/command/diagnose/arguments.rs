@@ -86,7 +86,7 @@ impl DiagnosisSettings {
         axes: Vec<(AxisCurve, Evidence)>,
     ) -> Result<Vec<OfPage>, Failure> {
         let model = self.filter.model()?;
-        let scope = Scope::new(self.max_effects, &self.own)?.for_axes(axes.len());
+        let scope = Scope::new(self.max_effects, &self.own)?;
         let diagnose = |(axis, mut evidence): (AxisCurve, Evidence)| {
             let name = axis.axis.clone();
             let spectrogram = evidence.spectrogram.take();

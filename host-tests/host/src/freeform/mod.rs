@@ -109,7 +109,7 @@ fn explained<const K: usize, const B: usize>(
         // The cut-off is among the parameters of both.
         let free = parameters as f64 - 1.0;
         let gain = improvement(last, new) - 2.0 * free;
-        if gain >= needed(beside(last), beside(new), options.threshold) {
+        if gain >= needed(last, new, options.threshold) {
             widen(new, found);
             return Ok(Some((freely, judged)));
         }
@@ -131,12 +131,20 @@ fn steps<const K: usize, const B: usize>(
     Ok((steps, verdict))
 }
 
-/// The gain that another filter needs. One that makes effects unnecessary may explain the record a little less well, because each of
-/// them had to pay for its choice among many.
-fn needed(beside: usize, then: usize, threshold: f64) -> f64 {
-    match beside.checked_sub(then) {
-        None | Some(0) => threshold,
-        Some(fewer) => -0.5 * threshold * fewer as f64,
+/// The gain that another filter needs over a model. Instead of a filter and what was named besides, it may explain the record a little
+/// less well, because each of them had to pay for its choice among many. Without a filter, noise of one fast pole is the simpler word.
+fn needed<const K: usize, const B: usize>(
+    last: &Step<K, B>,
+    new: &Step<K, B>,
+    threshold: f64,
+) -> f64 {
+    let fewer = beside(last) as f64 - beside(new) as f64;
+    if fewer <= 0.0 {
+        return threshold;
+    }
+    match last.model.terms().iter().any(|term| is_filter(term.effect)) {
+        true => -0.5 * threshold * fewer,
+        false => 0.0,
     }
 }
 
@@ -156,9 +164,14 @@ fn imitates(effect: &dyn Effect) -> bool {
 }
 
 /// Whether a filter of another form could explain a record better: something is left, or something that is no filter is named
-/// besides, and there is white noise to be filtered.
+/// besides, and there is white noise to be filtered. What the distribution of the values decided, as that of telegraph noise, is known
+/// by other evidence.
 fn needs_another<const K: usize, const B: usize>(verdict: Verdict, last: &Step<K, B>) -> bool {
+    let mut terms = last.model.terms().iter();
+    let is_known =
+        terms.any(|term| term.effect.description().distribution == Distribution::TwoLevels);
     match verdict {
+        _ if is_known => false,
         Verdict::Improved | Verdict::Incomplete => {
             beside(last) > 0 || last.fit.is_adequate() == Some(false)
         }

@@ -23,8 +23,8 @@ pub struct Freeform {
     pub chi_squared: f64,
     /// The probability of a larger χ² if that model is true.
     pub p_value: f64,
-    /// Whether that model is adequate.
-    pub explains: bool,
+    /// Whether that model is adequate, and whether the other one is.
+    pub explains: [bool; 2],
     /// The effects of the other model that this one does without.
     pub without: Vec<&'static str>,
 }
@@ -55,7 +55,7 @@ impl Freeform {
             angle_random_walk: [white.value, white.lower, white.upper],
             chi_squared: with.fit.chi_squared,
             p_value: with.fit.p_value,
-            explains: with.fit.is_adequate() == Some(true),
+            explains: [with, other].map(|step| step.fit.is_adequate() == Some(true)),
             without: without.map(|effect| effect.name()).collect(),
         })
     }
@@ -70,8 +70,9 @@ impl Freeform {
             Some((last, others)) => format!(" without {} and {last}", others.join(", ")),
         };
         let explains = match self.explains {
-            true => "explains the record",
-            false => "explains more of the record",
+            [true, true] => "explains the record as well",
+            [true, false] => "explains the record",
+            [false, _] => "explains more of the record",
         };
         format!(
             "a low pass of another form {explains}{without}: half of the power is left at {} Hz, N {value} ({lower} … {upper}) {unit}/√Hz, χ² {:.1}, p {}. Read which filters the sensor and its driver run",
@@ -93,13 +94,13 @@ mod tests {
             angle_random_walk: [0.00492, 0.004742, 0.005071],
             chi_squared: 93.6,
             p_value: 0.819,
-            explains: true,
+            explains: [true, false],
             without: vec!["output_low_pass", "resonance", "gauss_markov"],
         };
         let words = one.words(Unit::DegreesPerSecond);
         let start = "a low pass of another form explains the record without output low pass, resonance and Gauss–Markov: half of the power is left at 7.135 Hz, N 0.004920 (0.004742 … 0.005071) deg/s/√Hz, χ² 93.6, p = 0.819. ";
         assert!(words.starts_with(start), "{words}");
-        (one.explains, one.p_value) = (false, 0.002);
+        (one.explains, one.p_value) = ([false, false], 0.002);
         one.without.truncate(1);
         let words = one.words(Unit::DegreesPerSecond);
         let start =
